@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <stdexcept>
 #include <unistd.h>
 
 #include "common/file/folder.hpp"
@@ -69,6 +70,13 @@ void write_file(const std::string& path, const std::string& text) {
   if (!error) return;
   std::filesystem::remove(temporary, none);
   throw_unwritable(path, error.message());
+}
+
+std::string try_write_file(const std::string& path, const std::string& text) try {
+  write_file(path, text);
+  return "";
+} catch (const std::runtime_error& error) {
+  return error.what();
 }
 
 void require_replaceable(const std::string& path) {

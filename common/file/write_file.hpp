@@ -11,6 +11,9 @@ namespace sidestep {
 /// remains.
 void write_file(const std::string& path, const std::string& text);
 
+/// Like write_file(), but returns what it would throw as text, for work that goes on; empty on success.
+[[nodiscard]] std::string try_write_file(const std::string& path, const std::string& text);
+
 /// Checks, before work whose result goes to a file, that write_file() could write the file now, and creates
 /// its folder. Leaves the file as it is. Throws what write_file() would throw.
 void require_replaceable(const std::string& path);

@@ -107,6 +107,33 @@ TEST_CASE("a run that cannot write its report still prints its verdict, and name
                ContainsSubstring("cannot write r.log: File too large; lines are missing from here on"));
 }
 
+TEST_CASE("a run that can write neither report nor picture names both") {
+  const RunFixture f;
+  const std::string command = GENERATE("run", "simulate");
+  const std::string outputs = "--report r.json --svg p.svg";
+  const std::string limited =
+      "(ulimit -f 1; exec " +
+      (command == "run" ? f.command(outputs) : "\"$0\" simulate " + kScenario + " " + outputs) +
+      ") | cat >out";
+  const ProgramRun run = run_in_shell(limited, f.folder);
+  CAPTURE(command, run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors,
+             ContainsSubstring("cannot write r.json: File too large; cannot write p.svg: File too large"));
+  CHECK_FALSE(std::filesystem::exists(f.folder.file("p.svg")));
+}
+
+TEST_CASE("a run that has passed fails if its picture cannot be drawn, and keeps its report") {
+  const TemporaryFolder folder;
+  const ProgramRun run =
+      run_in_shell("\"$0\" simulate " + kScenario + " --report r.json --svg /dev/full >out", folder);
+  CAPTURE(run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring("cannot write /dev/full: No space left on device"));
+  CHECK_THAT(text_of(folder.file("out")), ContainsSubstring("\npassed\n"));
+  CHECK_THAT(text_of(folder.file("r.json")), ContainsSubstring("\"passed\": true"));
+}
+
 TEST_CASE("a run whose report or recording cannot be written ends before it starts anything") {
   const RunFixture f;
   std::filesystem::create_directory(f.folder.file("taken"));

@@ -366,11 +366,8 @@ std::string summary(const Report& r) {
 
 void write_report(const Report& report, const std::string& path) { write_file(path, to_json(report)); }
 
-std::string try_write_report(const Report& report, const std::string& path) try {
-  write_report(report, path);
-  return "";
-} catch (const std::runtime_error& error) {
-  return error.what();
+std::string try_write_report(const Report& report, const std::string& path) {
+  return try_write_file(path, to_json(report));
 }
 
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed) {

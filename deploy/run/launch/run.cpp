@@ -113,9 +113,12 @@ int run(const RunOptions& given) {
   options.floor.memory_folder = robot_memory.path();
   ProcessGroup group(log_path);
   const auto finish = [&](const Report& report) {
-    const std::string problem = try_write_report(report, report_path);
+    std::string problem = try_write_report(report, report_path);
     print_to(stdout, "{}log: {}\n", problem.empty() ? "report: " + report_path + "\n" : "", log_path);
-    if (!options.picture_file.empty()) write_file(options.picture_file, run_picture_from(to_json(report)));
+    if (!options.picture_file.empty()) {
+      const std::string drawing = try_write_file(options.picture_file, run_picture_from(to_json(report)));
+      problem += (problem.empty() || drawing.empty() ? "" : "; ") + drawing;
+    }
     if (!problem.empty()) throw std::runtime_error(problem);
     return exit_code(report.verdict());
   };
