@@ -311,23 +311,22 @@ std::string summary(const Report& r) {
   const double missed =
       r.cycles > 0 ? 100.0 * static_cast<double>(r.missed_cycles) / static_cast<double>(r.cycles) : 0;
   std::string text = fmt::format(
-      "{}, {} contacts between robots or with obstacles, minimum clearance {}\n"
+      "{}, {} contacts {}, minimum clearance {}\n"
       "makespan {}, mean arrival {} ({} times the straight-line time), {} route changes per second\n"
       "{} proposals, {} granted, {} denied; {:.2f} % of cycles missed; {} firmware violations\n"
       "negotiation p50 {:.0f} us, p99 {:.0f} us; planning p50 {:.0f} us, p99 {:.0f} us; safety search p50 "
       "{:.0f} us, p99 {:.0f} us\n",
-      arrived_text(r), r.contacts, to_text(r.min_clearance_m, "m"), to_text(r.makespan_s, "s"),
-      to_text(r.mean_arrival_s, "s"),
+      arrived_text(r), r.contacts, kContactMeaning, to_text(r.min_clearance_m, "m"),
+      to_text(r.makespan_s, "s"), to_text(r.mean_arrival_s, "s"),
       r.straight_line_time_ratio ? fmt::format("{:.2f}", *r.straight_line_time_ratio) : "?",
       r.route_changes_per_s ? fmt::format("{:.1f}", *r.route_changes_per_s) : "?", r.proposals, r.grants,
       r.denials, missed, r.firmware_violations, us(r.negotiation, 0.5), us(r.negotiation, 0.99),
       us(r.plan, 0.5), us(r.plan, 0.99), us(r.search, 0.5), us(r.search, 0.99));
   if (r.crashes > 0) {
     text += fmt::format(
-        "{} crashes: contacts of a robot with an opponent or a person, {} of them while the robot moved; "
-        "maximum "
-        "closing speed {:.2f} m/s, maximum robot share {:.2f} m/s\n",
-        r.crashes, r.crashes_while_moving, r.max_crash_speed_mps, r.max_robot_crash_speed_mps);
+        "{} crashes: {}, {} of them while the robot moved; maximum closing speed {:.2f} m/s, maximum robot "
+        "share {:.2f} m/s\n",
+        r.crashes, kCrashMeaning, r.crashes_while_moving, r.max_crash_speed_mps, r.max_robot_crash_speed_mps);
   }
   constexpr std::size_t kShownRobots = 10;
   std::size_t shown = 0;

@@ -112,6 +112,10 @@ struct Report {
   [[nodiscard]] AuditVerdict verdict() const;
 };
 
+/// What counts as a contact and as a crash, for summaries and pages.
+inline constexpr const char* kContactMeaning = "between robots or with obstacles";
+inline constexpr const char* kCrashMeaning = "contacts of a robot with an opponent or a person";
+
 /// The report as JSON with a fixed order of keys. Machine-dependent values are under "wall_clock".
 [[nodiscard]] std::string to_json(const Report& report);
 /// A summary in a few lines of text.

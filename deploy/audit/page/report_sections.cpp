@@ -10,6 +10,7 @@
 #include "common/svg/charts.hpp"
 #include "common/svg/palette.hpp"
 #include "common/svg/svg.hpp"
+#include "deploy/audit/metrics/report.hpp"
 #include "deploy/audit/page/report_events.hpp"
 #include "deploy/audit/picture/run_timing.hpp"
 
@@ -139,7 +140,10 @@ std::string figures_section(const Json& r) {
                     fmt::format("{} of {}", json_text(r.at("grants")), json_text(r.at("proposals"))));
   if (cycles && missed && *cycles > 0)
     figures += figure("cycles missed", fmt::format("{:.2f} %", 100 * *missed / *cycles));
-  return html_section("Figures", "<dl class='figures'>\n" + figures + "</dl>\n");
+  std::string note = fmt::format("Contacts: {}.", kContactMeaning);
+  if (r.at("crashes") != 0) note += fmt::format(" Crashes: {}.", kCrashMeaning);
+  return html_section("Figures", fmt::format("<dl class='figures'>\n{}</dl>\n<p class='dim'>{}</p>\n",
+                                             figures, xml_escaped(note)));
 }
 
 std::string speeds_section(const FloorTrace& trace) {

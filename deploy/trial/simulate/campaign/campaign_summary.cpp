@@ -11,6 +11,7 @@
 
 #include "common/json/json_text.hpp"
 #include "common/version/version.hpp"
+#include "deploy/audit/metrics/report.hpp"
 #include "deploy/trial/simulate/campaign/trial_result.hpp"
 
 namespace sidestep {
@@ -118,10 +119,9 @@ std::string CampaignSummary::text() const {
   const double hours = robot_hours();
   const Audited audit = audited();
   std::string text = fmt::format(
-      "{} seeds, {} failed; {:.2f} robot-hours, {:.1f} km driven; {} contacts between robots or with "
-      "obstacles, "
-      "{} audit violations, {} firmware violations\n",
-      seeds(), failed(), hours, distance_m / 1000, contacts(), audit.violations,
+      "{} seeds, {} failed; {:.2f} robot-hours, {:.1f} km driven; {} contacts {}, {} audit violations, {} "
+      "firmware violations\n",
+      seeds(), failed(), hours, distance_m / 1000, contacts(), kContactMeaning, audit.violations,
       sum(&TrialResult::firmware_violations));
   if (audit.skipped_trials > 0) {
     text += fmt::format(

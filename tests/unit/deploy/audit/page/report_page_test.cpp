@@ -30,6 +30,19 @@ TEST_CASE("the page of a run has its verdict, figures, paths, speeds, arrivals, 
   CHECK_THAT(page, ContainsSubstring(">0.75 s, 22 MB</text>"));
 }
 
+TEST_CASE("the page says what counts as a contact and, if there are any, as a crash") {
+  Report report = example_report();
+  CHECK_THAT(page_of(report),
+             ContainsSubstring("<p class='dim'>Contacts: between robots or with obstacles.</p>"));
+  report.crashes = 2;
+  report.crashes_while_moving = 1;
+  CHECK_THAT(
+      page_of(report),
+      ContainsSubstring("<dt>crashes while moving</dt><dd class='bad'>1</dd>") &&
+          ContainsSubstring("<p class='dim'>Contacts: between robots or with obstacles. Crashes: contacts of "
+                            "a robot with an opponent or a person.</p>"));
+}
+
 TEST_CASE("a page needs no other file and no network") {
   const std::string page = page_of(example_report());
   for (const char* part : {"src=", "href=", "url(http", "@import", "<link", "fetch("})
