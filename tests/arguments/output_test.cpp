@@ -22,6 +22,8 @@ using arguments::run_program;
 using namespace std::chrono_literals;
 
 const std::string kScenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+const std::string kFaultTest = SIDESTEP_SOURCE_DIR "/deploy/scenarios/faults/agent-killed.yaml";
+const std::string kLoneRobot = SIDESTEP_SOURCE_DIR "/deploy/scenarios/league/lone-robot.yaml";
 const std::string kImages = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing-images.yaml";
 constexpr auto kPatience = kIsSanitized ? 240s : 60s;
 
@@ -164,20 +166,31 @@ TEST_CASE("a monitor whose port is taken announces nothing and keeps an earlier 
   CHECK(f.text("r.mcap") == "earlier\n");
 }
 
-TEST_CASE("a run in a domain that another run uses keeps all files") {
+TEST_CASE("a run, a test or an examination in a domain that another run uses keeps all files") {
   const RunFixture f;
+  const std::string command = GENERATE("run", "test", "conformance");
+  const std::string domain = " --domain " + std::to_string(f.domain.number());
+  const std::string second = command == "run" ? f.command("--report r.json --record r.mcap")
+                             : command == "test"
+                                 ? "\"$0\" test " + kFaultTest + " --dds" + domain
+                                 : "\"$0\" conformance " + kLoneRobot + " --driver simulator" + domain;
   // The second run begins once the first one grants, and ends before the first one.
   const std::string script = f.command("--report first.json >first & first=$!", 30) +
                              "\nuntil grep -q 'coordinator grants' first; do sleep 0.1; done\n"
                              "echo earlier | tee r.log >r.mcap\n" +
-                             f.command("--report r.json --record r.mcap >second") +
-                             "\ncode=$?; kill -INT $first; wait $first; exit $code";
+                             second + " >second\ncode=$?; kill -INT $first; wait $first; exit $code";
   const ProgramRun run = run_in_shell(script, f.folder);
-  CAPTURE(run.errors);
-  CHECK(run.exit_code == 2);
-  CHECK_THAT(run.errors, ContainsSubstring("DDS domain " + std::to_string(f.domain.number()) +
-                                           " is in use: another run of crossing"));
-  CHECK(f.text("second").empty());
+  CAPTURE(command, run.errors);
+  const std::string reason =
+      "DDS domain " + std::to_string(f.domain.number()) + " is in use: another run of crossing";
+  if (command == "test") {
+    CHECK(run.exit_code == 1);
+    CHECK_THAT(f.text("second"), ContainsSubstring("could not run: " + reason));
+  } else {
+    CHECK(run.exit_code == 2);
+    CHECK_THAT(run.errors, ContainsSubstring(reason));
+    CHECK(f.text("second").empty());
+  }
   CHECK(f.text("r.log") == "earlier\n");
   CHECK(f.text("r.mcap") == "earlier\n");
   CHECK_FALSE(std::filesystem::exists(f.folder.file("r.json")));

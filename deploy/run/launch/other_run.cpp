@@ -87,8 +87,8 @@ void require_free_domain(const DdsSettings& dds) {
   OtherRun other(as_operator(dds));
   if (other.listen())
     throw std::invalid_argument(
-        fmt::format("DDS domain {} is in use: {}; end that run, or choose another --domain or --domain auto",
-                    dds.domain, other.describe()));
+        fmt::format("DDS domain {} is in use: {}; end that run, or choose another --domain", dds.domain,
+                    other.describe()));
 }
 
 }  // namespace sidestep

@@ -19,6 +19,7 @@
 #include "common/terminal/terminal.hpp"
 #include "deploy/audit/audit_totals.hpp"
 #include "deploy/run/launch/floor_processes.hpp"
+#include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_group.hpp"
 #include "deploy/trial/conformance/conformance.hpp"
 
@@ -93,6 +94,7 @@ int examine(const ConformanceOptions& options) {
   const RobotSpec& robot = only_robot(scenario);
   DdsSettings dds = options.dds;
   dds.identity = identity_of_process(robot.id, scenario);
+  if (options.driver != kRunning) require_free_domain(dds);  // a run has a simulator and vision of its own
   DdsBus bus(dds);
   bool is_interrupted = false;
   const StopSignals stop_signals([&] {
