@@ -197,8 +197,11 @@ void warn_of_keys() {
   });
 }
 
-std::runtime_error failure(const std::string& entity, const std::string& channel) {
-  return std::runtime_error(fmt::format("DDS failed to create the {} of topic '{}'", entity, channel));
+std::runtime_error failure(const std::string& entity, const std::string& channel, bool has_keys) {
+  return std::runtime_error(fmt::format(
+      "DDS failed to create the {} of topic '{}'{}", entity, channel,
+      has_keys ? "; keys that an earlier version issued may not allow it: `sidestep keys issue --again`"
+               : ""));
 }
 
 }  // namespace
@@ -266,7 +269,7 @@ dds::Topic* DdsParticipant::topic(const std::string& channel, const TypeSupport&
   }
   if (participant_->find_type(type_name).empty()) type.register_type(participant_);
   dds::Topic* created = participant_->create_topic(channel, type_name, TOPIC_QOS_DEFAULT);
-  if (created == nullptr) throw failure("topic", channel);
+  if (created == nullptr) throw failure("topic", channel, keys_.has_value());
   return created;
 }
 
@@ -287,7 +290,7 @@ DataWriter* DdsParticipant::create_writer(const std::string& channel, const Type
   require_permission(channel, true);
   const StatusMask mask = StatusMask::publication_matched() << StatusMask::offered_incompatible_qos();
   DataWriter* writer = publisher_->create_datawriter(topic(channel, type), qos, listener, mask);
-  if (writer == nullptr) throw failure("writer", channel);
+  if (writer == nullptr) throw failure("writer", channel, keys_.has_value());
   return writer;
 }
 
@@ -296,7 +299,7 @@ DataReader* DdsParticipant::create_reader(const std::string& channel, const Type
   require_permission(channel, false);
   const StatusMask mask = StatusMask::data_available() << StatusMask::requested_incompatible_qos();
   DataReader* reader = subscriber_->create_datareader(topic(channel, type), qos, listener, mask);
-  if (reader == nullptr) throw failure("reader", channel);
+  if (reader == nullptr) throw failure("reader", channel, keys_.has_value());
   return reader;
 }
 

@@ -79,6 +79,21 @@ TEST_CASE("keys that do not cover the domain are refused with the reason") {
   CHECK_NOTHROW(DdsParticipant(settings, nullptr));
 }
 
+TEST_CASE("an error about a topic that older keys do not allow says what to do") {
+  const TestKeys keys({"agent", "3"});
+  const Time from = keys.now() - std::chrono::hours(24), until = keys.now() + std::chrono::hours(24);
+  std::string text = permissions_text({Role::kAgent, 3, 3}, "CN=agent 3,O=Sidestep", from, until);
+  const std::string topic = "<topic>command/3</topic>";
+  REQUIRE(text.find(topic) != std::string::npos);
+  text.replace(text.find(topic), topic.size(), "<topic>earlier/3</topic>");
+  replace_document(keys, key_files::kPermissions, text);
+  DdsBus bus(settings_with(keys));
+  CHECK_NOTHROW((void)bus.advertise(topics::kProposal, 3));
+  CHECK_THROWS_WITH((void)bus.advertise(topics::kCommand, 3),
+                    ContainsSubstring("'command/3'; keys that an earlier version issued may not allow it: "
+                                      "`sidestep keys issue --again`"));
+}
+
 TEST_CASE("a process without keys notices that a run with keys is in its domain") {
   const TestKeys keys({"agent", "3"});
   DdsBus without(test_settings("without"));
