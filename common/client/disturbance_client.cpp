@@ -22,6 +22,12 @@ void DisturbanceClient::send(msg::Disturbance disturbance, OnResult on_result) {
   writer_.write(&sent_.back().disturbance);
 }
 
+void DisturbanceClient::give_up() {
+  std::list<Sent> given_up;
+  given_up.swap(sent_);
+  report(given_up, std::nullopt);
+}
+
 void DisturbanceClient::repeat() {
   const Time now = bus_.now();
   bus_.at(now + kRepetitionPeriod, [this] { repeat(); });

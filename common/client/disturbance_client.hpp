@@ -29,6 +29,8 @@ class DisturbanceClient {
 
   /// Sends a disturbance, whose header is set here. Calls back once, later.
   void send(msg::Disturbance disturbance, OnResult on_result);
+  /// Stops waiting for answers: calls back with nullopt for each disturbance that is not answered yet.
+  void give_up();
 
  private:
   struct Sent {

@@ -128,7 +128,8 @@ WebResponse MonitorServer::respond(const WebRequest& request) {
   if (auto response = fields(request)) return *response;
   if (request.method != "GET" && !request.command_refusal.empty())
     return api_error(401, request.command_refusal);
-  if (request.method != "GET" && is_over_) return api_error(409, "the run is over");
+  const bool needs_run = request.method != "GET" || request.path.starts_with("/api/orders/");
+  if (needs_run && is_over_) return api_error(409, "the run is over");
   return api_error(404, "there is no " + request.path);
 }
 

@@ -181,6 +181,8 @@ ControlApi::ControlApi(Bus& bus, ControlHooks hooks)
       disturbance_writer_(bus.relay(topics::kDisturbance, topics::kDisturbance.name)),
       disturbances_(bus, *disturbance_writer_) {}
 
+ControlApi::~ControlApi() { disturbances_.give_up(); }
+
 bool ControlApi::respond(const WebRequest& request, const WebReply& reply) {
   const std::vector<std::string> path = parts_of(request.path);
   if (path.empty()) return false;

@@ -43,6 +43,11 @@ struct ControlHooks {
 class ControlApi {
  public:
   ControlApi(Bus& bus, ControlHooks hooks);
+  /// Answers faults that the simulator has not answered yet with status 504. All other requests are answered
+  /// at once.
+  ~ControlApi();
+  ControlApi(const ControlApi&) = delete;
+  ControlApi& operator=(const ControlApi&) = delete;
 
   /// Replies at once or later. Returns false, and does not reply, if there is no such path. Requests that may
   /// not give commands are refused with status 401.

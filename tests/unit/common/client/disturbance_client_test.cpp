@@ -101,6 +101,24 @@ TEST_CASE("an operator without a simulator learns that nobody has answered") {
   CHECK(system.received.size() == count);
 }
 
+TEST_CASE("an operator that gives up learns of each open disturbance that nobody has answered") {
+  System system;
+  system.send(3);
+  system.run_for(100ms);
+  system.answers_with.reset();
+  system.send(4);
+  system.send(5);
+  system.client.give_up();
+  CHECK(system.results ==
+        std::vector<std::optional<Result>>{Result::FAULT_APPLIED, std::nullopt, std::nullopt});
+  system.run_for(1s);
+  REQUIRE(system.received.size() == 3);  // none is repeated
+  system.answer(system.received.back(), Result::FAULT_APPLIED);
+  system.run_for(10s);
+  CHECK(system.received.size() == 3);
+  CHECK(system.results.size() == 3);
+}
+
 TEST_CASE("answers to others, and malformed ones, are ignored") {
   System system;
   system.answers_with.reset();

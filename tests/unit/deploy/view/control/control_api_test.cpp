@@ -3,7 +3,10 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/json/json_text.hpp"
@@ -231,6 +234,23 @@ TEST_CASE("faults that the simulator refuses are answered with the reason and a 
   run.system.kill("simulator");
   check_fault("/api/robots/4/fault", R"({"kind": "reboot"})", 504,
               "the simulator does not answer, so the fault may or may not have been applied");
+}
+
+TEST_CASE("a fault that is not answered yet when the control ends is answered with status 504") {
+  ControlledRun run;
+  SimBus bus(run.system.network());
+  std::optional<ControlApi> api(std::in_place, bus, ControlHooks{});
+  std::vector<WebResponse> answers;
+  const WebReply reply = [&](WebResponse answer) { answers.push_back(std::move(answer)); };
+  REQUIRE(api->respond({"POST", "/api/robots/3/hold", {}, "", ""}, reply));
+  CHECK(answers.size() == 1);
+  REQUIRE(api->respond({"POST", "/api/robots/4/fault", {}, R"({"kind": "lift"})", ""}, reply));
+  CHECK(answers.size() == 1);
+  api.reset();
+  REQUIRE(answers.size() == 2);
+  CHECK(answers[1].status == 504);
+  CHECK(parse_json(answers[1].body).at("error") ==
+        "the simulator does not answer, so the fault may or may not have been applied");
 }
 
 TEST_CASE("requests without the token are refused and have no effect") {

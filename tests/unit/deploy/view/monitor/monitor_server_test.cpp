@@ -63,6 +63,7 @@ TEST_CASE("when the run is over, its page still shows it, but commands are refus
   CHECK(refused.status == 409);
   CHECK(run.error(refused) == "the run is over");
   CHECK(run.request("POST", "/api/hold", "wrong").status == 401);
+  CHECK(run.error(run.request("GET", "/api/orders/1", "")) == "the run is over");
   CHECK(run.request("GET", "/", "").status == 200);
   const Json scene = parse_json(run.request("GET", "/api/scene", "").body);
   CHECK(scene.at("is_recording") == true);
