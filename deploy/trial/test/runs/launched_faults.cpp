@@ -86,7 +86,7 @@ void LaunchedFaults::end(std::size_t fault) {
   for (const std::string& process : paused_[fault]) (void)launcher_.send_signal(process, SIGCONT);
 }
 
-std::vector<FaultProblem> LaunchedFaults::problems() const {
+std::vector<FaultProblem> LaunchedFaults::problems() {
   std::vector<FaultProblem> all = disturbances_ ? disturbances_->problems() : std::vector<FaultProblem>();
   std::ranges::copy(attestations_.problems(), std::back_inserter(all));
   return all;

@@ -29,7 +29,8 @@ class LaunchedFaults {
   void end(std::size_t fault);
   /// Repeats attestations. Call it at least a few times a second.
   void update() { attestations_.update(launcher_.bus().now()); }
-  std::vector<FaultProblem> problems() const;
+  /// Faults that could not be applied. Call it at the end of the run; see RobotDisturbances::problems().
+  std::vector<FaultProblem> problems();
 
  private:
   void require_local(const std::string& process, const std::string& text) const;

@@ -19,4 +19,9 @@ void RobotDisturbances::begin(const RobotDisturbance& disturbance, const Planned
   client_.send(encode(disturbance), add_problem);
 }
 
+const std::vector<FaultProblem>& RobotDisturbances::problems() {
+  client_.give_up();
+  return problems_;
+}
+
 }  // namespace sidestep

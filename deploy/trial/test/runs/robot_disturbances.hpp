@@ -16,8 +16,9 @@ class RobotDisturbances {
 
   /// `planned`: the fault of the test that contains the disturbance.
   void begin(const RobotDisturbance& disturbance, const PlannedFault& planned);
-  /// Disturbances that were refused, or not answered within DisturbanceClient::kTimeout.
-  const std::vector<FaultProblem>& problems() const { return problems_; }
+  /// Disturbances that were refused or not answered. Call it at the end of the run: disturbances that still
+  /// wait for an answer are given up, because they may never have been applied.
+  const std::vector<FaultProblem>& problems();
 
  private:
   DisturbanceClient client_;

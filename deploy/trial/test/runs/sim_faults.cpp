@@ -62,7 +62,7 @@ void SimFaults::end(std::size_t fault) {
     impair(impairment->target, kUnimpairedLink);
 }
 
-std::vector<FaultProblem> SimFaults::problems() const {
+std::vector<FaultProblem> SimFaults::problems() {
   std::vector<FaultProblem> all = disturbances_.problems();
   std::ranges::copy(attestations_.problems(), std::back_inserter(all));
   return all;

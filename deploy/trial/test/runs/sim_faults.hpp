@@ -27,7 +27,8 @@ class SimFaults {
   /// Restarts killed processes if the scenario says so, and repeats attestations. Call it at least a few
   /// times a second.
   void update();
-  std::vector<FaultProblem> problems() const;
+  /// Faults that could not be applied. Call it at the end of the run; see RobotDisturbances::problems().
+  std::vector<FaultProblem> problems();
 
  private:
   void apply(const Kill& fault, const PlannedFault&);

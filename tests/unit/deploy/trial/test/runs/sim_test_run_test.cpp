@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/test/runs/sim_test_run.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -129,6 +130,20 @@ TEST_CASE("disturbances that the simulator refuses fail the test with the reason
   CHECK_THAT(failures[0], StartsWith("at 1.000 s: could not place") && EndsWith(": robot 1 is on the floor"));
   CHECK_THAT(failures[1], StartsWith("at 1.500 s: could not switch") && EndsWith(": robot 2 is switched on"));
   CHECK_THAT(failures[2], StartsWith("at 2.500 s: could not push") && EndsWith(": robot 2 is off the floor"));
+}
+
+TEST_CASE("a disturbance that is not answered before the test ends fails the test") {
+  const FaultTest test = parse_fault_test(
+      "field: {length_m: 6, width_m: 3}\ntime_limit_s: 3\nrobots:\n"
+      "  - {id: 1, start_m: [-2, -0.5], goals_m: [[2, -0.5]]}\n"
+      "faults: [{at_s: 1.5, kill: simulator}, {at_s: 2, lift: 1}]\nexpect: [{not_arrived: 1}]\n",
+      "short.yaml");
+  const std::vector<std::string> failures = judged(test, run_on_sim_bus(test, 1)).failures();
+  CAPTURE(failures);
+  CHECK(std::ranges::count_if(failures, [](const std::string& failure) {
+          return failure.starts_with("at 2.000 s: could not lift") &&
+                 failure.ends_with(": the simulator does not answer");
+        }) == 1);
 }
 
 TEST_CASE("without ground truth nothing is judged") {
