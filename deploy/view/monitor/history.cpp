@@ -13,11 +13,9 @@ std::size_t size_of(const Snapshot& snapshot) { return snapshot.frame->size() + 
 }  // namespace
 
 void History::add(Snapshot snapshot) {
-  if (!snapshots_.empty() && snapshot.at <= snapshots_.back().at) return;
-  if (++skipped_ < stride_) return;
+  if (!is_later(snapshot) || ++skipped_ < stride_) return;
   skipped_ = 0;
-  bytes_ += size_of(snapshot);
-  snapshots_.push_back(std::move(snapshot));
+  append(std::move(snapshot));
   if (when_full_ == WhenFull::kThinOut) {
     if (bytes_ > max_bytes_) thin_out();
     return;
@@ -26,6 +24,19 @@ void History::add(Snapshot snapshot) {
     bytes_ -= size_of(snapshots_.front());
     snapshots_.pop_front();
   }
+}
+
+void History::add_last(Snapshot snapshot) {
+  if (is_later(snapshot)) append(std::move(snapshot));
+}
+
+bool History::is_later(const Snapshot& snapshot) const {
+  return snapshots_.empty() || snapshot.at > snapshots_.back().at;
+}
+
+void History::append(Snapshot snapshot) {
+  bytes_ += size_of(snapshot);
+  snapshots_.push_back(std::move(snapshot));
 }
 
 void History::thin_out() {

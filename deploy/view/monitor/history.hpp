@@ -27,6 +27,9 @@ class History {
   /// Adds a snapshot. Ignores it if it is not later than the last one. A history that has been thinned out
   /// also ignores some later snapshots.
   void add(Snapshot snapshot);
+  /// Adds the last snapshot of a run or of a recording. Ignores it only if it is not later than the one
+  /// before.
+  void add_last(Snapshot snapshot);
   bool empty() const { return snapshots_.empty(); }
   std::size_t size() const { return snapshots_.size(); }
   std::size_t bytes() const { return bytes_; }
@@ -42,6 +45,8 @@ class History {
   const Snapshot& stepped(Time time, int steps) const;
 
  private:
+  bool is_later(const Snapshot& snapshot) const;
+  void append(Snapshot snapshot);
   std::size_t index_at(Time time) const;
   void thin_out();
 

@@ -205,7 +205,7 @@ void Monitor::take_last_snapshot() {
   update_panels();
   // The history would ignore a second snapshot of the same moment.
   const Time now = history_.empty() ? bus_.now() : std::max(bus_.now(), history_.last().at + Duration{1});
-  history_.add({now, std::make_shared<const std::string>(encode_frame(floor_, now)), latest_panels_});
+  history_.add_last({now, std::make_shared<const std::string>(encode_frame(floor_, now)), latest_panels_});
 }
 
 void Monitor::end() {

@@ -66,6 +66,16 @@ TEST_CASE("a full history of a recording keeps its whole time span with fewer sn
   }
 }
 
+TEST_CASE("a history that was thinned out keeps the last snapshot of a recording") {
+  for (int count = 1000; count < 1064; ++count) {
+    History history = filled(count, 20'000, History::WhenFull::kThinOut);
+    history.add_last(snapshot(20'000));
+    CHECK(history.last().at == at_ms(20'000));
+    history.add_last(snapshot(20'000));
+    CHECK(history.stepped(history.last().at, -1).at < at_ms(20'000));
+  }
+}
+
 TEST_CASE("a viewer sees the newest moment, a paused moment or a playback") {
   History history = filled(100);
   ViewerTime time;
