@@ -220,22 +220,26 @@ void OrderClient::on_memory(const msg::OrderMemory& memory) {
   if (!page || !is_coordinator(page->process)) return;
   const auto memory_known = memories_.find(page->process);
   if (page->count == 0 && memory_known != memories_.end())
-    for (const RememberedOrder& order : page->orders) memory_known->second.merge(order);
+    for (const RememberedOrder& order : page->orders) memory_known->second.book.merge(order);
   if (page->count == 0 || !page->is_complete) return;
   Round& round = rounds_[page->process];
   if (page->index == 0) round = {};
   if (page->index != round.next_page) return;
   for (const RememberedOrder& order : page->orders) round.book.merge(order);
   if (++round.next_page != page->count) return;
-  memories_[page->process] = round.book;
+  memories_[page->process] = {round.book, bus_.now()};
   compare(page->process, round.book);
 }
 
 std::optional<OrderBook> OrderClient::remembered_orders() const {
   if (memories_.empty()) return std::nullopt;
+  const auto heard_at = [](const auto& entry) { return entry.second.heard_at; };
+  const Time newest = std::ranges::max_element(memories_, {}, heard_at)->second.heard_at;
   OrderBook merged;
-  for (const auto& [coordinator, memory] : memories_)
-    for (const RememberedOrder& order : memory.all()) merged.merge(order);
+  for (const auto& [coordinator, memory] : memories_) {
+    if (newest - memory.heard_at > kMaxMemoryLag) continue;
+    for (const RememberedOrder& order : memory.book.all()) merged.merge(order);
+  }
   return merged;
 }
 

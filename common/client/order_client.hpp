@@ -74,7 +74,8 @@ class OrderClient {
   /// The latest report of each robot.
   const std::map<RobotId, OrderReport>& reports() const { return reports_; }
   /// The orders in the latest complete memories of coordinators, and those that these have announced since;
-  /// nullopt if no complete memory was received yet. Coordinators repeat their memories once a second.
+  /// nullopt if no complete memory was received yet. Leaves out coordinators that no longer repeat their
+  /// memories while another one does: they have died, and orders in their memories may have ended since.
   std::optional<OrderBook> remembered_orders() const;
   /// Whether this client has set this zone, coordinators remember that it did, or none has told its memory
   /// yet.
@@ -84,11 +85,18 @@ class OrderClient {
 
   static constexpr std::size_t kMaxFinal = 1000;
   static constexpr Duration kRepetitionPeriod{200'000'000};
+  /// A coordinator whose memory is older than that of another one by more than this has died. Coordinators
+  /// repeat their memories once a second.
+  static constexpr Duration kMaxMemoryLag{3'000'000'000};
 
  private:
   struct Round {
     std::uint32_t next_page = 0;
     OrderBook book;
+  };
+  struct Memory {
+    OrderBook book;
+    Time heard_at{};  ///< when its last complete repetition arrived
   };
   OrderHandle send(Order order);
   OrderHandle send_zone(Order order);
@@ -126,8 +134,8 @@ class OrderClient {
   /// Number of consecutive complete order memories of each coordinator that lack the order.
   std::map<OrderHandle, std::map<std::uint32_t, int>> missing_;
   std::map<RobotId, OrderReport> reports_;
-  std::map<std::uint32_t, Round> rounds_;        // keyed by coordinator
-  std::map<std::uint32_t, OrderBook> memories_;  // the last complete memory of each coordinator
+  std::map<std::uint32_t, Round> rounds_;     // keyed by coordinator
+  std::map<std::uint32_t, Memory> memories_;  // the last complete memory of each coordinator
   std::function<void(const SentOrder&)> on_change_;
   Writer<msg::Order> writer_;
 };

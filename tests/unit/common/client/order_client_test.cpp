@@ -132,6 +132,35 @@ TEST_CASE("a client may have a zone that it has set, that coordinators remember,
   CHECK_FALSE(other.may_have_zone(7));
 }
 
+TEST_CASE("a client forgets what only a dead coordinator remembered once another one repeats its memory") {
+  System system;
+  const auto zones = [&] { return system.client.remembered_orders()->zones(); };
+  OrderBook other;
+  Order zone{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient + 1, 5};
+  zone.zone_number = 7;
+  zone.zone = disc(1);
+  (void)other.merge({zone});
+  for (int i = 0; i < 10; ++i) {
+    system.tell_memory(kCoordinator + 1, other);
+    system.tell_memory();
+    system.run_for(1s);
+  }
+  CHECK(zones().size() == 1);
+  SECTION("the other coordinator lives") {
+    for (int i = 0; i < 5; ++i) {
+      system.tell_memory();
+      system.run_for(1s);
+    }
+    CHECK(zones().empty());
+    system.tell_memory(kCoordinator + 1, other);
+    CHECK(zones().size() == 1);
+  }
+  SECTION("no coordinator lives") {
+    system.run_for(60s);
+    CHECK(zones().size() == 1);
+  }
+}
+
 TEST_CASE("a client knows who holds a robot, also if one of two coordinators has died since") {
   System system;
   const auto is_held = [&] { return system.client.remembered_orders()->is_held(3); };
