@@ -191,6 +191,24 @@ TEST_CASE("Ctrl-C ends a run and its page, and a run continues without its monit
   }
 }
 
+TEST_CASE(
+    "Ctrl-C before the page of a run can be opened starts nothing else, and ends even a page that hangs") {
+  const std::uint16_t port = free_port();
+  bool was_in_time = false;
+  for (int attempt = 0; attempt < 5 && !was_in_time; ++attempt) {
+    LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port)});
+    REQUIRE(run.wait_until([&] { return run.pid_of("monitor") > 0; }));
+    REQUIRE(kill(run.pid_of("monitor"), SIGSTOP) == 0);
+    REQUIRE(kill(run.pid(), SIGINT) == 0);
+    CHECK_FALSE(run.wait_for_end().empty());
+    was_in_time = !run.printed("monitor: http");
+    if (!was_in_time) continue;
+    CHECK_FALSE(run.printed("started simulator"));
+    CHECK_FALSE(run.printed("until Ctrl-C"));
+  }
+  CHECK(was_in_time);
+}
+
 TEST_CASE("a run whose port is taken is refused before anything starts") {
   const TakenPort port;
   LaunchedRun run(kWaitingRobots, {"--monitor=" + port.number()});

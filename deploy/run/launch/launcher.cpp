@@ -2,7 +2,6 @@
 #include "deploy/run/launch/launcher.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "common/process/stop_signals.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/senders.hpp"
+#include "deploy/run/launch/end_process.hpp"
 #include "deploy/run/launch/monitor_process.hpp"
 #include "deploy/run/launch/process_command.hpp"
 #include "deploy/run/launch/process_group.hpp"
@@ -132,6 +132,10 @@ void Launcher::work() {
   }
   // Before all others, so that they do not start if the page cannot be shown.
   if (options_.monitor_port && before_.deaths.empty()) start_monitor();
+  if (is_interrupted_) {
+    abort_reason_ = kInterrupted;
+    return;
+  }
   start_core();
   while (!check_end()) {
     start_due_agents();
@@ -232,7 +236,8 @@ void Launcher::end_monitored_run() {
   if (is_ready_)
     children_.add_input(kMonitorProcess, std::string(LauncherInput::kRunIsOver) + "\n");
   else
-    (void)children_.send_signal(kMonitorProcess, SIGTERM);  // there is nothing to see
+    // There is nothing to see. Waits for its end, so that it is not taken for a page that stays.
+    end_process(children_, kMonitorProcess, kTerminationTimeout);
 }
 
 void Launcher::start_core() {

@@ -12,6 +12,7 @@
 
 #include "common/file/temporary_folder.hpp"
 #include "common/file/write_file.hpp"
+#include "deploy/run/launch/end_process.hpp"
 #include "tests/catch.hpp"
 #include "tests/text_of.hpp"
 
@@ -299,6 +300,25 @@ TEST_CASE("a process that outlasts the run is not kept if it ends, or if the use
     return 6;
   }) == 6);
   CHECK(calls == 1);
+  CHECK_FALSE(f.group.has_outlasting());
+}
+
+TEST_CASE("a process that would outlast the run is not kept if the director ends it, even if it hangs") {
+  Fixture f;
+  int calls = 0;
+  f.on_outlasting = [&] { ++calls; };
+  const bool hangs = GENERATE(false, true);
+  CAPTURE(hangs);
+  const std::string trap = hangs ? "trap '' TERM" : "trap 'sleep 0.2; exit 0' TERM";
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    (void)processes.start(page(trap + "; echo ready; while :; do sleep 0.01; done"));
+    wait_for([&] { return !processes.last_lines("page").empty(); });
+    end_process(processes, "page", hangs ? 200ms : 10s);
+    end_process(processes, "page", 10s);  // has no effect
+    return processes.send_signal("page", SIGTERM) ? 9 : 5;
+  });
+  CHECK(code == 5);
+  CHECK(calls == 0);
   CHECK_FALSE(f.group.has_outlasting());
 }
 
