@@ -17,6 +17,15 @@ export function orderText(what, state) {
   return `${what} ${state.order} ${state.phase}${state.reason ? `: ${state.reason}` : ""}`;
 }
 
+/**
+ * Why a request was not carried out, as far as is known.
+ * @param {string} what e.g. "Robot 3: push" @param {number} status of HTTP @param {string} error
+ */
+export function failureText(what, status, error) {
+  if (status === 504) return `${what}: no answer; it may have been applied`;
+  return `${what} ${status >= 500 ? "failed" : "refused"}: ${error}`;
+}
+
 export class Controls {
   /** @param {string} token */
   constructor(token) {
@@ -85,25 +94,29 @@ export class Controls {
   }
 
   /**
-   * Sends a request, and shows what becomes of it. Returns the answer, or null if it was refused.
+   * Sends a request, and shows what becomes of it, unless there was a later one. Returns the answer, or null if it was not
+   * carried out.
    * @param {string} path @param {any} body @param {string} what for people, e.g. "Robot 3: hold" @returns {Promise<any>}
    */
   async post(path, body, what) {
     const number = ++this.posts;
+    const show = (/** @type {string} */ result) => {
+      if (number === this.posts) this.result.textContent = result;
+    };
     try {
       const response = await fetch(path, {method: "POST", headers: {Authorization: `Bearer ${this.token}`},
                                           body: body ? JSON.stringify(body) : ""});
       const text = (await response.text()).trim();
       const answer = parsed(text);
       if (!response.ok) {
-        this.result.textContent = `${what} refused: ${answer.error || text}`;
+        show(failureText(what, response.status, answer.error || text));
         return null;
       }
-      this.result.textContent = `${what} sent`;
+      show(`${what} sent`);
       if (answer.order !== undefined) this.follow(answer.order, what, number);
       return answer;
     } catch (error) {
-      this.result.textContent = `${what} not sent: ${error}`;
+      show(`${what}: no answer; it may have been applied (${error})`);
       return null;
     }
   }
@@ -117,8 +130,8 @@ export class Controls {
       await new Promise((resolve) => setTimeout(resolve, kFollowPeriod_ms));
       if (number !== this.posts) return;
       const response = await fetch(`/api/orders/${order}`).catch(() => null);
-      if (!response || !response.ok || number !== this.posts) return;
-      const state = await response.json();
+      const state = response && response.ok ? await response.json().catch(() => null) : null;
+      if (!state || number !== this.posts) return;
       this.result.textContent = orderText(what, state);
       if (kFinal.includes(state.phase)) return;
     }

@@ -16,12 +16,17 @@ export async function fetchTrails(time, onChange) {
     return;
   }
   isAsking = true;
-  const response = await fetch(`/api/trails?at_s=${time}`).catch(() => null);
-  if (response && response.ok) {
-    trails.addAll(await response.json());
-    onChange();
+  try {
+    const response = await fetch(`/api/trails?at_s=${time}`);
+    if (response.ok) {
+      trails.addAll(await response.json());
+      onChange();
+    }
+  } catch {
+    // There is no connection, or it was lost before the whole answer had arrived: trails begin at this moment.
+  } finally {
+    isAsking = false;
   }
-  isAsking = false;
   if (next === null) return;
   const wanted = next;
   next = null;

@@ -234,6 +234,7 @@ export function openPage(html, {hash = "", storage = {}, prefersLight = false, i
   define("fetch", async (path, options = {method: "GET"}) => {
     page.requests.push({path, ...options});
     const answer = page.answers[path.split("?")[0]];
+    if (typeof answer === "function") return answer();
     return {ok: Boolean(answer && !answer.error), text: async () => JSON.stringify(answer ?? {error: "there is no " + path}),
             json: async () => answer};
   });
@@ -265,7 +266,7 @@ const kSections = [{name: "robots", columns: kRobots}, {name: "ledger", columns:
 export function sceneOf(robots, changes = {}) {
   return {type: "scene", name: "test", is_known: true, field: {length_m: 9, width_m: 6}, radius_m: 0.09, margin_m: 0.03, tracking_bound_m: 0.02,
           clock_bound_s: 0.005, speed_mps: 2, opponent_speed_mps: 2, cycle_s: 0.0167, cameras: 0, obstacles: [], robots,
-          layout: {sections: kSections, flags: ["off_reference", "lifted", "held", "blocked"]}, is_recording: false, can_command: false,
+          layout: {sections: kSections, flags: ["off_reference", "lifted", "held", "blocked"]}, is_recording: false, can_command: false, has_messages: true,
           channels: ["feedback/0"], ...changes};
 }
 

@@ -130,6 +130,44 @@ test("an order is shown until its end, with the reason of a refusal", async () =
   assert.equal(text(page, "command-result"), "Robot 1: hold 17 refused: there are too many holds");
 });
 
+/** Opens a page that may command, and selects robot 1. */
+async function openWithSelection() {
+  const page = await openMonitor({hash: "#token=secret"}, {can_command: true});
+  for (const type of ["pointerdown", "pointerup"]) page.element("floor").fire(type, {pointerId: 1, ...at(page, kPlaces[1])});
+  return page;
+}
+const answerOf = (status, body) => ({ok: status === 200, status, text: async () => JSON.stringify(body)});
+
+test("a fault that nobody has answered may have been applied, and is not said to be refused", async () => {
+  const page = await openWithSelection();
+  const shown = async (answer) => {
+    page.answers["/api/robots/1/fault"] = answer;
+    page.element("command-lift").click();
+    await settled();
+    return text(page, "command-result");
+  };
+  assert.equal(await shown(() => answerOf(504, {error: "the simulator does not answer"})),
+               "Robot 1: lift: no answer; it may have been applied");
+  assert.equal(await shown(() => answerOf(409, {error: "robot 1 is off the floor"})), "Robot 1: lift refused: robot 1 is off the floor");
+  assert.equal(await shown(() => answerOf(500, {error: "the disk is full"})), "Robot 1: lift failed: the disk is full");
+  assert.match(await shown(() => Promise.reject(new Error("connection lost"))), /^Robot 1: lift: no answer; it may have been applied /);
+});
+
+test("a slow answer to a fault does not hide what became of a later command", async () => {
+  const page = await openWithSelection();
+  for (const status of [200, 504]) {
+    let finish = (_) => {};
+    page.answers = {"/api/robots/1/fault": () => new Promise((resolve) => (finish = resolve)), "/api/robots/1/hold": {order: 17}};
+    page.element("command-lift").click();
+    page.element("command-hold").click();
+    await settled();
+    assert.equal(text(page, "command-result"), "Robot 1: hold sent");
+    finish(answerOf(status, {}));
+    await settled();
+    assert.equal(text(page, "command-result"), "Robot 1: hold sent");
+  }
+});
+
 /** The pixel of the canvas that shows a place. */
 function at(page, place) {
   const {x, y} = globalThis.monitor.floor.toPixels(place);
@@ -301,6 +339,24 @@ test("after a jump the trails of the new moment are fetched", async () => {
   await settled();
   assert.equal(wanted().length, 2);
   assert.deepEqual(globalThis.monitor.trails.before(0, 102).map((p) => p.x), [-3, -2.5]);
+});
+
+test("trails are fetched again after an answer that was cut off", async () => {
+  const page = await openMonitor();
+  await settled();
+  const jumpTo = async (time) => {
+    page.receive(frameOf(time, kPlaces));
+    page.draw();
+    await settled();
+    await settled();
+  };
+  page.answers["/api/trails"] = () => ({ok: true, json: () => Promise.reject(new Error("cut off"))});
+  await jumpTo(102);
+  page.answers["/api/trails"] = () => Promise.reject(new Error("no connection"));
+  await jumpTo(108);
+  page.answers["/api/trails"] = {robots: [{id: 0, points: [[105.5, -3, 1]]}]};
+  await jumpTo(106);
+  assert.ok(globalThis.monitor.trails.before(0, 106).some((p) => p.x === -3));
 });
 
 test("without a scenario the robots are fitted, as they are found", async () => {
