@@ -226,6 +226,7 @@ Json Monitor::scene() const {
   json["type"] = "scene";
   json["is_recording"] = settings_.is_recording;
   json["can_command"] = settings_.can_command;
+  json["has_messages"] = !settings_.is_recording || static_cast<bool>(settings_.recorded_messages);
   json["channels"] = channels_;
   return json;
 }

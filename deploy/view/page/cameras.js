@@ -21,6 +21,12 @@ export class Cameras {
     setInterval(() => this.update(), kPeriod_ms);
   }
 
+  /** Says that no more images will come. */
+  end() {
+    this.hint.textContent = "The run is over: images of cameras are not kept.";
+    this.hint.hidden = false;
+  }
+
   async update() {
     if (!this.isShown()) return;
     for (const [i, image] of this.images.entries()) {

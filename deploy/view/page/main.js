@@ -40,7 +40,7 @@ const timeline = new Timeline(send);
 const inspector = new Inspector(send);
 const controls = new Controls(token);
 const dock = new Dock();
-const cameras = new Cameras(() => dock.isShown("cameras") && monitor.connection === "connected");
+const cameras = new Cameras(() => dock.isShown("cameras") && !monitor.scene?.is_recording && monitor.connection === "connected");
 
 /** State for tests and for debugging. */
 const monitor = {frames: 0, script_ms: /** @type {number[]} */ ([]), panels: /** @type {any} */ (null),
@@ -102,16 +102,16 @@ function useScene(scene) {
   const canCommand = floor.canCommand = scene.can_command && token !== "";
   element("title").textContent = scene.name ? `Sidestep: ${scene.name}` : "Sidestep";
   timeline.set({isRecording: scene.is_recording});
-  inspector.setChannels(scene.channels);
+  inspector.setChannels(scene.channels, scene.has_messages);
   if (scene.can_command && isFirst) dock.add("control", "Control", controls.node);
   controls.allow(canCommand, scene.is_recording);
   if (isFirst && scene.cameras > 0 && !scene.is_recording) {
     dock.add("cameras", "Cameras", cameras.node);
     cameras.start(scene.cameras);
   }
+  if (!isFirst && scene.is_recording) cameras.end();
   element("bookmark").hidden = element("record").hidden = !canCommand;
   if (isFirst) floor.fitFloor();
-  if (inspector.channel.value) inspector.choose();
   showVerdicts();
   const at_s = Number(link.get("t"));
   if (isFirst && at_s > 0) timeline.seek(at_s);

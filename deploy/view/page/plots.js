@@ -6,6 +6,8 @@ import {palette} from "./theme.js";
 const kColours = ["sky", "orange", "green", "purple", "yellow", "red"];
 const kNoChannel = "Choose a channel to see its messages, and one of its numbers to plot it over time.";
 const kNoMessage = "No message in the 30 s before this moment.";
+const kNotKept = "The run is over, and its messages are not kept. Record a run (sidestep run --record FILE.mcap) to see its messages " +
+    "later: sidestep monitor FILE.mcap.";
 const kSpan_s = 30;
 const kMaxPoints = 6000;
 
@@ -104,6 +106,8 @@ export class Inspector {
     this.hint = create("p", {class: "hint"}, kNoChannel);
     this.plot = new Plot();
     this.received = 0;
+    this.hasMessages = true;
+    this.isInspecting = false;
     /** @type {Set<string>} */
     this.plotted = new Set();
     /** @type {Set<string>} */
@@ -130,24 +134,28 @@ export class Inspector {
     this.hint.hidden = !text;
   }
 
-  /** @param {string[]} channels */
-  setChannels(channels) {
+  /** @param {string[]} channels @param {boolean} hasMessages whether the monitor has messages to show */
+  setChannels(channels, hasMessages) {
+    this.hasMessages = hasMessages;
     const chosen = this.channel.value;
     this.channel.replaceChildren(create("option", {value: ""}, "none"), ...channels.map((c) => create("option", {value: c}, c)));
     this.channel.value = chosen;
+    this.choose();
   }
 
   choose() {
     this.fields.clear();
     this.field.replaceChildren(create("option", {value: ""}, "add a number"));
     this.text.textContent = "";
-    this.showHint(this.channel.value ? kNoMessage : kNoChannel);
-    this.send({op: "inspect", channel: this.channel.value || null});
+    this.showHint(!this.hasMessages ? kNotKept : this.channel.value ? kNoMessage : kNoChannel);
+    const wanted = this.hasMessages ? this.channel.value || null : null;
+    if (wanted || this.isInspecting) this.send({op: "inspect", channel: wanted});
+    this.isInspecting = wanted !== null;
   }
 
   /** @param {{channel: string, is_new: boolean, messages: {at_s: number, message: any}[]}} batch */
   update(batch) {
-    if (batch.channel !== this.channel.value) return;
+    if (!this.hasMessages || batch.channel !== this.channel.value) return;
     if (batch.is_new) this.plot.series.clear();
     this.received += batch.messages.length;
     for (const {at_s, message} of batch.messages) {

@@ -278,10 +278,12 @@ TEST_CASE("a run that has ended is shown as a recording") {
   MonitoredRun run;
   run.system.run_for(6s);
   const double end_s = run.viewer.time_s();
+  CHECK(run.viewer.states.at("scene").at("has_messages") == true);
   run.monitor.end();
   run.monitor.update_viewers(run.bus.now());
   CHECK(run.viewer.states.at("scene").at("is_recording") == true);
   CHECK(run.viewer.states.at("scene").at("can_command") == false);
+  CHECK(run.viewer.states.at("scene").at("has_messages") == false);
   CHECK(run.viewer.states.at("whole").at("is_over") == true);
   CHECK(run.viewer.events.back().at("text") == "the run is over");
   CHECK(run.promise().at("state") == "kept");

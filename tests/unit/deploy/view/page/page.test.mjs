@@ -109,6 +109,39 @@ test("a run that ends becomes a recording: nothing can be commanded any more", a
   assert.doesNotMatch(text(page, "clock"), /live/);
 });
 
+test("when a run ends, the page says that messages and images are not kept, and asks for none", async () => {
+  const page = await openMonitor({}, {cameras: 1});
+  const channel = page.element("inspected");
+  channel.value = "feedback/0";
+  channel.fire("change");
+  assert.deepEqual(page.sent, [{op: "inspect", channel: "feedback/0"}]);
+  page.element("tab-cameras").click();
+  const images = () => page.requests.filter((request) => request.path.startsWith("/api/cameras")).length;
+  page.tick();
+  await settled();
+  assert.ok(images() > 0);
+  page.receive(sceneOf(kRobots, {cameras: 1, is_recording: true, has_messages: false}));
+  const before = images();
+  page.tick();
+  await settled();
+  assert.equal(images(), before);
+  assert.match(text(page, "panel-cameras"), /images of cameras are not kept/);
+  assert.match(text(page, "panel-inspect"), /messages are not kept/);
+  channel.value = "feedback/0";
+  channel.fire("change");
+  assert.match(text(page, "panel-inspect"), /messages are not kept/);
+  assert.doesNotMatch(text(page, "panel-inspect"), /30 s before/);
+  assert.deepEqual(page.sent.slice(1), [{op: "inspect", channel: null}]);
+});
+
+test("the messages of a recording are inspected", async () => {
+  const page = await openMonitor({}, {is_recording: true});
+  page.element("inspected").value = "feedback/0";
+  page.element("inspected").fire("change");
+  assert.deepEqual(page.sent, [{op: "inspect", channel: "feedback/0"}]);
+  assert.match(text(page, "panel-inspect"), /No message in the 30 s before/);
+});
+
 test("without the token, the control panel says how to get it", async () => {
   const page = await openMonitor({}, {can_command: true});
   assert.match(text(page, "panel-control"), /Open the link that the monitor printed/);
