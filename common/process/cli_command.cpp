@@ -126,6 +126,8 @@ Option Option::excludes(const Option& other) const {
 bool Option::is_given() const { return option_->count() > 0; }
 
 CliCommand CliCommand::add_subcommand(const std::string& name, const std::string& description) const {
+  // At most one command: a later word with the name of a command is an argument of the first.
+  if (app_->get_require_subcommand_max() == 0) app_->require_subcommand(0, 1);
   return CliCommand(*app_->add_subcommand(name, description));
 }
 

@@ -62,13 +62,25 @@ std::string unknown_command(const std::string& word, const CLI::App& app, const 
   return fmt::format("{} is not a command{}", in_quotes(word), hint);
 }
 
+/// What is wrong with an option of the program in front of a command, which would ignore it. Empty: nothing.
+std::string option_before_command(const CLI::App& root) {
+  if (root.get_subcommands().empty()) return "";
+  const auto given = root.get_options([](const CLI::Option* option) { return option->count() > 0; });
+  if (given.empty()) return "";
+  return fmt::format("{}: expected after the command {}", given.front()->get_name(),
+                     root.get_subcommands().front()->get_name());
+}
+
 /// Names the word found where a command is expected, because the library would only say that a command is
 /// missing, and what a mistyped word may stand for.
 std::string clear_message(const CLI::ParseError& error, const CLI::App& root, const CommandInfo& program) {
+  if (const std::string problem = option_before_command(root);
+      !problem.empty() && error.get_name() == "RequiredError")
+    return problem;
   const CLI::App* app = &root;
   while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
   const std::vector<std::string> rest = app->remaining(), all_rest = root.remaining(true);
-  if (app->get_require_subcommand_min() > 0 && !rest.empty() && !rest.front().starts_with("-"))
+  if (!commands_of(*app).empty() && !rest.empty() && !rest.front().starts_with("-"))
     return unknown_command(rest.front(), *app, program);
   const auto option = std::ranges::find_if(
       all_rest, [](const auto& word) { return word.starts_with("--") && word.size() > 2; });
@@ -123,13 +135,19 @@ std::string CommandLine::help_as(const std::string& form) const {
   return form == "zsh" ? zsh_completion(info()) : fish_completion(info());
 }
 
+int CommandLine::refuse(const std::string& problem) const {
+  (void)app_->exit(CLI::ParseError(problem, CLI::ExitCodes::ExtrasError));
+  return kExitUsage;
+}
+
+void CommandLine::parse_words(std::vector<std::string> arguments) {
+  app_->parse(reversed(std::move(arguments)));
+  if (const std::string problem = option_before_command(*app_); !problem.empty()) throw UsageError(problem);
+}
+
 std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
-  const auto refuse = [this](const std::string& problem) {
-    (void)app_->exit(CLI::ParseError(problem, CLI::ExitCodes::ExtrasError));
-    return kExitUsage;
-  };
   try {
-    app_->parse(reversed({argv + 1, argv + argc}));
+    parse_words({argv + 1, argv + argc});
     if (!help_command_ || !help_command_->parsed()) return std::nullopt;
     print_to(stdout, "{}", help(help_words_));
     return 0;
@@ -146,7 +164,7 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
 
 void CommandLine::parse(std::vector<std::string> arguments) {
   try {
-    app_->parse(reversed(std::move(arguments)));
+    parse_words(std::move(arguments));
   } catch (const CLI::ParseError& error) {
     throw UsageError(clear_message(error, *app_, info()));
   }

@@ -52,6 +52,7 @@ class CliCommand {
  public:
   explicit CliCommand(CLI::App& app) : app_(&app) {}
 
+  /// A command line contains at most one of the subcommands, and then none of the program's own options.
   CliCommand add_subcommand(const std::string& name, const std::string& description) const;
   void require_subcommand() const;
   /// Text at the end of --help.
@@ -95,6 +96,8 @@ class CommandLine {
   [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
   /// Parses the arguments after the program's name. Throws UsageError.
   void parse(std::vector<std::string> arguments);
+  /// Reports on stderr wrong usage that parse() cannot find. Returns kExitUsage.
+  int refuse(const std::string& problem) const;
 
   /// The program with all its options and commands.
   [[nodiscard]] CommandInfo info() const;
@@ -106,6 +109,8 @@ class CommandLine {
 
  private:
   static std::vector<std::string> reversed(std::vector<std::string> arguments);
+  /// Throws CLI::Error or UsageError.
+  void parse_words(std::vector<std::string> arguments);
   std::unique_ptr<CLI::App> app_;
   std::string form_;                     ///< value of --help-as
   CLI::App* help_command_ = nullptr;     ///< null: the program has no command `help`

@@ -76,12 +76,23 @@ int run_process(int argc, char** argv, const Program& program) {
   std::string scenario_file;
   DdsSettings dds;
   LogLevel log_level = LogLevel::kInfo;
-  app.add_option("--scenario", scenario_file, "scenario file").required();
+  const Option scenario_option =
+      app.add_option("--scenario", scenario_file,
+                     program.add_commands ? "scenario file; required without COMMAND" : "scenario file");
+  // A required option would be required in front of a command, too.
+  if (!program.add_commands) scenario_option.required();
   add_dds_options(app, dds);
   add_log_option(app, log_level);
   app.add_flag("--faults", dds.faults, "accept `sidestep fault network`; for tests");
   if (program.add_options) program.add_options(app);
+  std::function<int()> action;
+  if (program.add_commands) {
+    program.add_commands(app, action);
+    command_line.add_help_command();
+  }
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
+  if (action) return run_and_report_errors(program.name, action);
+  if (!scenario_option.is_given()) return command_line.refuse("--scenario is required");
 
   dds.participant = program.participant ? program.participant() : program.name;
   set_up_log(dds.participant, log_level);

@@ -34,6 +34,8 @@ struct Program {
   std::string description;  ///< one sentence for --help
   /// Adds the program's own options. Empty: none.
   std::function<void(const CliCommand&)> add_options;
+  /// Adds the program's commands, which set the action to carry out instead of the process. Empty: none.
+  std::function<void(const CliCommand&, std::function<int()>& action)> add_commands;
   /// Returns the name of the DDS participant, which also names the process in its log, for example agent-3.
   /// Called after the options are parsed. Empty: `name`.
   std::function<std::string()> participant;
@@ -48,6 +50,7 @@ struct Program {
 
 /// The main function of a process on DDS: parses the options, loads the scenario, starts the program and runs
 /// until SIGINT or SIGTERM. Returns the exit code. The process logs to stderr under the participant's name.
+/// If the command line contains one of the program's commands, carries that out instead.
 int run_process(int argc, char** argv, const Program& program);
 
 /// The incarnation of a process that starts now. It is a clock reading, and above the incarnation of the

@@ -171,6 +171,47 @@ TEST_CASE("a command is required where there are commands") {
   CHECK_THROWS_WITH(Commands().line.parse({"outer"}), ContainsSubstring("subcommand is required"));
 }
 
+/// A program that does something without a command, too.
+struct OptionalCommand {
+  CommandLine line{"A program under test.", "sidestep-test"};
+  std::string scenario, out, file;
+
+  OptionalCommand() {
+    line.root().add_option("--scenario", scenario, "what to run");
+    const CliCommand view = line.root().add_subcommand("view", "Shows pictures");
+    view.add_option("--out", out, "where to write").required();
+    line.root().add_subcommand("replay", "Sends a log").add_option("FILE", file, "what to send").required();
+    line.add_help_command();
+  }
+};
+
+TEST_CASE("a program whose command may be left out names an unknown command") {
+  const auto [words, message] = GENERATE(table<std::vector<std::string>, std::string>({
+      {{"viw"}, "\"viw\" is not a command; did you mean view?"},
+      {{"viw", "--out", "there"}, "\"viw\" is not a command; did you mean view?"},
+      {{"--scenario", "a", "viw"}, "\"viw\" is not a command; did you mean view?"},
+      {{"explode"}, "\"explode\" is not a command, expected one of: view, replay, help"},
+  }));
+  CHECK_THROWS_WITH(OptionalCommand().line.parse(words), message);
+  OptionalCommand f;
+  f.line.parse({"--scenario", "a"});
+  CHECK(f.scenario == "a");
+  CHECK_THAT(f.line.help({}), ContainsSubstring("Usage: sidestep-test [OPTIONS] [COMMAND]\n"));
+}
+
+TEST_CASE("an argument with the name of a command is an argument") {
+  OptionalCommand f;
+  f.line.parse({"replay", "view"});
+  CHECK(f.file == "view");
+  CHECK_THROWS_WITH(OptionalCommand().line.parse({"replay", "a", "view"}), ContainsSubstring("view"));
+}
+
+TEST_CASE("a program's option in front of a command is refused, because the command would ignore it") {
+  const auto words = GENERATE(std::vector<std::string>{"--scenario", "a", "view"},
+                              std::vector<std::string>{"--scenario", "a", "view", "--out", "there"});
+  CHECK_THROWS_WITH(OptionalCommand().line.parse(words), "--scenario: expected after the command view");
+}
+
 TEST_CASE("an unknown option is named with the option that is meant") {
   CHECK_THROWS_WITH(Commands().line.parse({"other", "--sped=3"}),
                     ContainsSubstring("--sped=3") && EndsWith("; did you mean --speed?"));

@@ -57,6 +57,42 @@ TEST_CASE("invalid usage and an invalid scenario exit with 2, --help exits with 
   CHECK_FALSE(started);
 }
 
+TEST_CASE("a program with commands carries out the one that is given, and without one starts its nodes") {
+  Program program = test_program();
+  std::string done;
+  program.add_commands = [&](const CliCommand& app, std::function<int()>& action) {
+    app.add_subcommand("work", "Works").on_parsed([&] {
+      action = [&] {
+        done += " work";
+        return kExitFailure;
+      };
+    });
+    app.add_subcommand("fail", "Fails").on_parsed([&] {
+      action = []() -> int { throw std::invalid_argument("the file is missing"); };
+    });
+  };
+  program.start = [&](DdsBus& bus, const Scenario&, Incarnation) {
+    done += " start";
+    bus.stop();
+    return RunningNodes{};
+  };
+  CHECK(run(program, {"work"}).exit_code == kExitFailure);
+  CHECK(done == " work");
+  const Outcome failed = run(program, {"fail"});
+  CHECK(failed.exit_code == kExitUsage);
+  CHECK(failed.err == "sidestep-test: the file is missing\n");
+  const Outcome unknown = run(program, {"wrok"});
+  CHECK(unknown.exit_code == kExitUsage);
+  CHECK_THAT(unknown.err, ContainsSubstring("\"wrok\" is not a command; did you mean work?"));
+  const Outcome incomplete = run(program, {});
+  CHECK(incomplete.exit_code == kExitUsage);
+  CHECK_THAT(incomplete.err, StartsWith("--scenario is required\n"));
+  CHECK(run(program, {"help", "work"}).exit_code == 0);
+  CHECK(done == " work");
+  CHECK(run(program, good_arguments()).exit_code == 0);
+  CHECK(done == " work start");
+}
+
 TEST_CASE("a program prints its safety budget at start") {
   Program program = test_program();
   program.start = [](DdsBus& bus, const Scenario&, Incarnation) {
