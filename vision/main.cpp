@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <string>
-
 #include "common/log/log.hpp"
-#include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "common/protocol/senders.hpp"
 #include "vision/calibrate/calibrate_command.hpp"
@@ -11,10 +8,8 @@
 #include "vision/view/view_command.hpp"
 #include "vision/vision_service.hpp"
 
-namespace sidestep {
-namespace {
-
-int run_service(int argc, char** argv) {
+int main(int argc, char** argv) {
+  using namespace sidestep;
   VisionOptions options;
   Program program;
   program.name = "sidestep-vision";
@@ -22,9 +17,11 @@ int run_service(int argc, char** argv) {
   program.add_options = [&options](const CliCommand& app) {
     add_league_options(app, options);
     add_image_options(app, options.images);
-    app.add_footer(
-        "Commands, each with --help: sidestep-vision view, calibrate SCENARIO FRAME..., calibrate --geometry "
-        "POINTS, replay FILE, record FILE.");
+  };
+  program.add_commands = [](const CliCommand& app, std::function<int()>& action) {
+    add_view_command(app, action);
+    add_calibrate_command(app, action);
+    add_log_commands(app, action);
   };
   program.process = [] { return static_cast<std::uint32_t>(Sender::kVision); };
   program.start = [&options](DdsBus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
@@ -33,16 +30,4 @@ int run_service(int argc, char** argv) {
     return {service, {}};
   };
   return run_process(argc, argv, program);
-}
-
-}  // namespace
-}  // namespace sidestep
-
-int main(int argc, char** argv) {
-  const std::string command = argc > 1 ? argv[1] : "";
-  if (command == "replay") return sidestep::replay_command(argc - 1, argv + 1);
-  if (command == "view") return sidestep::view_command(argc - 1, argv + 1);
-  if (command == "calibrate") return sidestep::calibrate_command(argc - 1, argv + 1);
-  if (command == "record") return sidestep::record_command(argc - 1, argv + 1);
-  return sidestep::run_service(argc, argv);
 }

@@ -2,11 +2,11 @@
 #include "vision/calibrate/calibrate_command.hpp"
 
 #include <fmt/format.h>
+#include <memory>
 #include <stdexcept>
 
 #include "common/file/write_file.hpp"
 #include "common/process/command_line.hpp"
-#include "common/process/process.hpp"
 #include "vision/calibrate/calibrate_colours.hpp"
 #include "vision/calibrate/calibrate_geometry.hpp"
 
@@ -52,43 +52,45 @@ int run_geometry(const CalibrateOptions& options) {
   return 0;
 }
 
+int calibrate(const CalibrateOptions& options) {
+  if (!options.out_file.empty()) require_replaceable(options.out_file);
+  return options.points_file.empty() ? run_colours(options) : run_geometry(options);
+}
+
 }  // namespace
 
-int calibrate_command(int argc, char** argv) {
-  CommandLine command_line(
-      "Learns colours from pictures of a floor on which everything is at its start position. With "
-      "--geometry: "
-      "calibrates cameras from points with known positions.",
-      kName);
-  const CliCommand app = command_line.root();
-  CalibrateOptions options;
+void add_calibrate_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<CalibrateOptions>();
+  CalibrateColoursOptions& colours = options->colours;
+  const CliCommand command = root.add_subcommand("calibrate",
+                                                 "Learns colours from pictures of a floor on which "
+                                                 "everything is at its start position. With --geometry: "
+                                                 "calibrates cameras from points with known positions");
   const Option geometry =
-      app.add_option("--geometry", options.points_file,
-                     "calibrate cameras instead, from this file of points, see vision/README.md");
-  app.add_option("SCENARIO", options.colours.scenario_file, "scenario file, see deploy/scenarios/README.md")
+      command.add_option("--geometry", options->points_file,
+                         "calibrate cameras instead, from this file of points, see vision/README.md");
+  command.add_option("SCENARIO", colours.scenario_file, "scenario file, see deploy/scenarios/README.md")
       .excludes(geometry);
-  app.add_option("FRAME", options.colours.frame_files, "pictures by cameras, such as PNG files")
+  command.add_option("FRAME", colours.frame_files, "pictures by cameras, such as PNG files")
       .excludes(geometry);
-  app.add_option("--camera", options.colours.cameras,
-                 "numbers of the cameras: one for all frames, or one for each frame as N,N,...")
+  command
+      .add_option("--camera", colours.cameras,
+                  "numbers of the cameras: one for all frames, or one for each frame as N,N,...")
       .comma_separated()
       .show_default()
       .excludes(geometry);
-  app.add_option("--cameras", options.colours.cameras_file, "file of cameras [cameras as in the scenario]")
+  command.add_option("--cameras", colours.cameras_file, "file of cameras [cameras as in the scenario]")
       .excludes(geometry);
-  app.add_option("--layout", options.colours.layout_file, "layout of the robots' markers [the butterfly]")
+  command.add_option("--layout", colours.layout_file, "layout of the robots' markers [the butterfly]")
       .excludes(geometry);
-  app.add_option("--format", options.colours.format,
-                 "format of the frames to which the thresholds will apply [the scenario's]")
+  command
+      .add_option("--format", colours.format,
+                  "format of the frames to which the thresholds will apply [the scenario's]")
       .check(one_of({"yuv422", "rgb"}))
       .excludes(geometry);
-  app.add_option("--out", options.out_file,
-                 "file for the thresholds or cameras; an earlier file is replaced [standard output]");
-  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_and_report_errors(kName, [&] {
-    if (!options.out_file.empty()) require_replaceable(options.out_file);
-    return options.points_file.empty() ? run_colours(options) : run_geometry(options);
-  });
+  command.add_option("--out", options->out_file,
+                     "file for the thresholds or cameras; an earlier file is replaced [standard output]");
+  command.on_parsed([options, &action] { action = [options] { return calibrate(*options); }; });
 }
 
 }  // namespace sidestep

@@ -126,28 +126,24 @@ int record(const LogOptions& options) {
 
 }  // namespace
 
-int replay_command(int argc, char** argv) {
-  CommandLine command_line("Sends the packets of a log with the timing with which they were received.",
-                           "sidestep-vision replay");
-  const CliCommand app = command_line.root();
-  LogOptions options;
-  add_log_options(app, options);
-  app.add_option("--seek", options.seek_s, "start this many seconds after the first packet")
+void add_log_commands(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<LogOptions>();
+  const CliCommand replayed = root.add_subcommand(
+      "replay", "Sends the packets of a log with the timing with which they were received");
+  add_log_options(replayed, *options);
+  replayed.add_option("--seek", options->seek_s, "start this many seconds after the first packet")
       .check(in_range(0.0, 1e9))
       .show_default();
-  app.add_option("--speed", options.speed, "speed factor").check(in_range(0.001, 1000.0)).show_default();
-  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_and_report_errors("sidestep-vision replay", [&] { return replay(options); });
-}
+  replayed.add_option("--speed", options->speed, "speed factor")
+      .check(in_range(0.001, 1000.0))
+      .show_default();
+  replayed.on_parsed([options, &action] { action = [options] { return replay(*options); }; });
 
-int record_command(int argc, char** argv) {
-  CommandLine command_line("Records the league's multicast packets in a log.", "sidestep-vision record");
-  const CliCommand app = command_line.root();
-  LogOptions options;
-  add_log_options(app, options);
-  app.add_flag("--force", options.overwrites, "overwrite the file if it exists");
-  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_and_report_errors("sidestep-vision record", [&] { return record(options); });
+  const CliCommand recorded =
+      root.add_subcommand("record", "Records the league's multicast packets in a log");
+  add_log_options(recorded, *options);
+  recorded.add_flag("--force", options->overwrites, "overwrite the file if it exists");
+  recorded.on_parsed([options, &action] { action = [options] { return record(*options); }; });
 }
 
 }  // namespace sidestep

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/view/view_command.hpp"
 
+#include <algorithm>
 #include <fmt/core.h>
+#include <memory>
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
@@ -101,28 +103,29 @@ int view(const ViewOptions& options) {
 
 }  // namespace
 
-int view_command(int argc, char** argv) {
-  CommandLine command_line("Writes pictures of a running system's images, annotated with the detections.",
-                           "sidestep-vision view");
-  const CliCommand app = command_line.root();
-  ViewOptions options;
-  options.dds.participant = "sidestep-view";
-  app.add_option("--scenario", options.scenario_file, "scenario file").required();
-  app.add_option("--out", options.folder, "folder for the pictures").required();
-  app.add_option("--count", options.count, "pictures per camera").check(in_range(1, 100000)).show_default();
-  app.add_option("--period-s", options.period_s, "minimum time between two pictures of one camera")
+void add_view_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<ViewOptions>();
+  options->dds.participant = "sidestep-view";
+  const CliCommand command = root.add_subcommand(
+      "view", "Writes pictures of a running system's images, annotated with the detections");
+  command.add_option("--scenario", options->scenario_file, "scenario file").required();
+  command.add_option("--out", options->folder, "folder for the pictures").required();
+  command.add_option("--count", options->count, "pictures per camera")
+      .check(in_range(1, 100000))
+      .show_default();
+  command.add_option("--period-s", options->period_s, "minimum time between two pictures of one camera")
       .check(in_range(0.0, 3600.0))
       .show_default();
-  app.add_option("--timeout-s", options.timeout_s,
-                 "time to wait for images, in addition to the pictures' period")
+  command
+      .add_option("--timeout-s", options->timeout_s,
+                  "time to wait for images, in addition to the pictures' period")
       .check(in_range(0.1, 86400.0))
       .show_default();
-  app.add_flag("--plain", options.is_plain,
-               "write pictures without annotation, for sidestep-vision calibrate");
-  add_image_options(app, options.images);
-  add_dds_options(app, options.dds);
-  if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_and_report_errors("sidestep-vision view", [&] { return view(options); });
+  command.add_flag("--plain", options->is_plain,
+                   "write pictures without annotation, for sidestep-vision calibrate");
+  add_image_options(command, options->images);
+  add_dds_options(command, options->dds);
+  command.on_parsed([options, &action] { action = [options] { return view(*options); }; });
 }
 
 }  // namespace sidestep

@@ -8,6 +8,7 @@
 #include "common/image/picture.hpp"
 #include "common/process/process.hpp"
 #include "tests/catch.hpp"
+#include "tests/unit/vision/calibrate/calibrate_run.hpp"
 #include "tests/unit/vision/calibrate/rendered_start.hpp"
 #include "vision/cameras/camera_file.hpp"
 #include "vision/colours/colour_file.hpp"
@@ -25,14 +26,6 @@ struct Folder {
   ~Folder() { std::filesystem::remove_all(path); }
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
-
-int calibrate(const std::vector<std::string>& arguments) {
-  std::vector<std::string> all{"calibrate"};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& argument : all) argv.push_back(argument.data());
-  return calibrate_command(static_cast<int>(argv.size()), argv.data());
-}
 
 void save_start(const std::string& scenario_file, std::size_t camera, const std::string& path) {
   const Scenario scenario = load_scenario(scenario_file);

@@ -11,9 +11,11 @@
 #include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 #include "tests/unit/common/random/normal_vector.hpp"
-#include "vision/calibrate/calibrate_command.hpp"
+#include "tests/unit/vision/calibrate/calibrate_run.hpp"
 
 namespace sidestep::calibrate_geometry_test {
+
+using sidestep::test::calibrate;
 
 /// The text of a camera's points at three heights, with noisy pixels.
 std::string points_text(std::uint32_t id, const CameraModel& camera, const Box& view_m, int count,
@@ -45,14 +47,6 @@ struct Folder {
   ~Folder() { std::filesystem::remove_all(path); }
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
-
-int calibrate(const std::vector<std::string>& arguments) {
-  std::vector<std::string> all{"calibrate"};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& argument : all) argv.push_back(argument.data());
-  return calibrate_command(static_cast<int>(argv.size()), argv.data());
-}
 
 TEST_CASE("known cameras are recovered from a file of points") {
   const std::uint64_t seed = 31;
