@@ -56,11 +56,8 @@ int exec_evaluation(const char* const* argv) {
 
 int main(int argc, char** argv) {
   using namespace sidestep;
-  if (argc > 1 && is_evaluation(argv[1])) return exec_evaluation(argv);
-  if (argc == 3 && std::string_view(argv[1]) == "help" && is_evaluation(argv[2])) {
-    const char* const arguments[] = {argv[0], argv[2], "--help", nullptr};
-    return exec_evaluation(arguments);
-  }
+  const int command = argc > 2 && std::string_view(argv[1]) == "help" ? 2 : 1;
+  if (argc > command && is_evaluation(argv[command])) return exec_evaluation(argv);
   CommandLine command_line("Distributed multi-robot navigation without collisions.", "sidestep");
   const CliCommand app = command_line.root();
   app.require_subcommand();

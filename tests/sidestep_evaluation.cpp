@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   std::function<int()> action;
   add_bench_command(app, action);
   add_study_command(app, action);
+  command_line.add_help_command();
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   return run_and_report_errors("sidestep", action);
 }
