@@ -16,7 +16,7 @@ struct ScreenSize {
 
 [[nodiscard]] Terminal terminal_of(int descriptor);
 
-/// The size of a terminal now. 80 columns and 24 rows if the terminal does not know it.
+/// The size of a terminal now. 80 columns and 24 rows if the terminal does not know it, or if it is none.
 [[nodiscard]] ScreenSize screen_size(int descriptor);
 
 }  // namespace sidestep

@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sstream>
-#include <sys/ioctl.h>
 #include <unistd.h>
+
+#include "common/terminal/terminal.hpp"
 
 namespace sidestep {
 namespace {
@@ -63,9 +64,8 @@ std::string help_text(const CommandInfo& command, std::size_t width) {
 }
 
 std::size_t help_width() {
-  winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 100;
-  return std::clamp<std::size_t>(size.ws_col, 60, 120);
+  if (isatty(STDOUT_FILENO) == 0) return 100;
+  return static_cast<std::size_t>(std::clamp(screen_size(STDOUT_FILENO).columns, 60, 120));
 }
 
 }  // namespace sidestep

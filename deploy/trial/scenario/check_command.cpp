@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <sys/ioctl.h>
 #include <unistd.h>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "common/file/write_file.hpp"
 #include "common/process/exit_code.hpp"
 #include "common/process/output_paths.hpp"
+#include "common/terminal/terminal.hpp"
 #include "deploy/trial/scenario/reachable_goals.hpp"
 #include "deploy/trial/scenario/scenario_picture.hpp"
 #include "deploy/trial/scenario/scenario_schema.hpp"
@@ -31,12 +31,7 @@ struct CheckOptions {
   bool prints_schema = false;
 };
 
-int picture_columns() {
-  constexpr int kDefaultColumns = 80;
-  winsize size{};
-  const bool is_terminal = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return std::min<int>(is_terminal ? size.ws_col : kDefaultColumns, 120);
-}
+int picture_columns() { return std::min(screen_size(STDOUT_FILENO).columns, 120); }
 
 std::string counted(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
