@@ -17,6 +17,7 @@ namespace sidestep {
 class SenderMeter {
  public:
   void add(const msg::Header& header, Time received);
+  bool is_empty() const { return streams_.empty(); }
 
   /// A table with a title and one line per sender.
   [[nodiscard]] std::string table() const;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <atomic>
 #include <fmt/core.h>
 
 #include "common/file/console.hpp"
+#include "common/messaging/dds/listener.hpp"
 #include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
 #include "deploy/inspect/senders/sender_meter.hpp"
+#include "deploy/inspect/topic/silence.hpp"
 #include "deploy/inspect/topic/topic_channel.hpp"
 #include "deploy/inspect/topic/topic_tools.hpp"
 
@@ -19,29 +23,49 @@ bool measure(Bus& bus, const std::string& channel, SenderMeter& meter) {
   });
 }
 
+int measure_in_recording(const TopicOptions& options) {
+  SenderMeter meter;
+  PlaybackBus bus(options.recording_file);
+  if (!measure(bus, options.topic, meter)) return kExitFailure;
+  const PlaybackResult result = bus.play();
+  print_damage(options.recording_file, result.damage);
+  if (meter.is_empty())
+    fmt::print(stderr, "{}\n", recorded_silence_text(options.topic, options.recording_file, 0));
+  else
+    print_output("{}", meter.table());
+  return !meter.is_empty() && result.damage.empty() ? 0 : kExitFailure;
+}
+
+int measure_live(const TopicOptions& options) {
+  SenderMeter meter;
+  DdsBus bus(options.dds);
+  if (!measure(bus, options.topic, meter)) return kExitFailure;
+  std::atomic<bool> is_stopped = false;
+  const StopSignals stop_signals([&] {
+    is_stopped = true;
+    bus.stop();
+  });
+  stop_without_reader(bus);
+  const Duration discovery = from_seconds(options.discovery_s);
+  const Time end = options.seconds > 0 ? bus.now() + from_seconds(options.seconds) : Time::max();
+  bus.run_until(std::min(end, bus.now() + discovery));
+  if (meter.is_empty() && !is_stopped && !is_output_abandoned()) {
+    const DdsListener listener(options.dds);
+    bus.run_until(bus.now() + discovery);
+    if (meter.is_empty() && !is_stopped)
+      fmt::print(stderr, "{}{}\n", silence_text(options.topic, options.dds.domain, listener.endpoints(), 0),
+                 bus.now() < end ? "; waiting" : "");
+  }
+  bus.run_until(end);
+  if (meter.is_empty()) return is_output_abandoned() ? 0 : kExitFailure;
+  print_output("{}", meter.table());
+  return 0;
+}
+
 }  // namespace
 
 int measure_delay(const TopicOptions& options) {
-  SenderMeter meter;
-  bool is_damaged = false;
-  if (!options.recording_file.empty()) {
-    PlaybackBus bus(options.recording_file);
-    if (!measure(bus, options.topic, meter)) return kExitFailure;
-    const PlaybackResult result = bus.play();
-    print_damage(options.recording_file, result.damage);
-    is_damaged = !result.damage.empty();
-  } else {
-    DdsBus bus(options.dds);
-    if (!measure(bus, options.topic, meter)) return kExitFailure;
-    const StopSignals stop_signals([&bus] { bus.stop(); });
-    stop_without_reader(bus);
-    if (options.seconds > 0)
-      bus.run_until(bus.now() + from_seconds(options.seconds));
-    else
-      bus.run();
-  }
-  print_output("{}", meter.table());
-  return is_damaged ? kExitFailure : 0;
+  return options.recording_file.empty() ? measure_live(options) : measure_in_recording(options);
 }
 
 }  // namespace sidestep

@@ -4,14 +4,12 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <vector>
 
 #include "common/file/console.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
-#include "deploy/inspect/record/bag.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
 #include "deploy/inspect/topic/describe.hpp"
 #include "deploy/inspect/topic/idl/idl_decoder.hpp"
@@ -38,13 +36,9 @@ int echo_recording(const TopicOptions& options, MessagePrinter& printer) {
   if (!print_channel(bus, options.topic, printer, [&bus] { bus.stop(); })) return kExitFailure;
   const PlaybackResult result = bus.play();
   print_damage(options.recording_file, result.damage);
-  if (printer.printed() == 0) {
-    std::vector<std::string> channels;
-    for (const auto& [channel, content] : bag_info(options.recording_file).channels)
-      channels.push_back(channel);
+  if (printer.printed() == 0)
     fmt::print(stderr, "{}\n",
-               silence_text(options.topic, options.recording_file, channels, printer.received()));
-  }
+               recorded_silence_text(options.topic, options.recording_file, printer.received()));
   return printer.printed() > 0 && result.damage.empty() ? 0 : kExitFailure;
 }
 

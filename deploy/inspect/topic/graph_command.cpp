@@ -12,6 +12,7 @@
 #include "common/process/stop_signals.hpp"
 #include "deploy/inspect/topic/graph.hpp"
 #include "deploy/inspect/topic/graph_picture.hpp"
+#include "deploy/inspect/topic/silence.hpp"
 
 namespace sidestep {
 namespace {
@@ -33,7 +34,9 @@ int show_graph(const GraphOptions& options) {
   const int error = write_text(stdout, to_text(graph));
   if (!options.picture_file.empty()) write_file(options.picture_file, graph_picture(graph));
   require_printed(error);
-  return graph.processes.empty() ? kExitFailure : 0;
+  if (!graph.processes.empty()) return 0;
+  print_to(stderr, "{}\n", empty_domain_text(options.dds.domain));
+  return kExitFailure;
 }
 
 }  // namespace

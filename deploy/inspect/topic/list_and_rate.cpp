@@ -9,6 +9,7 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/inspect/topic/rate_meter.hpp"
+#include "deploy/inspect/topic/silence.hpp"
 #include "deploy/inspect/topic/topic_table.hpp"
 #include "deploy/inspect/topic/topic_tools.hpp"
 #include "deploy/inspect/topic/topic_writer.hpp"
@@ -42,7 +43,9 @@ int list_topics(const TopicOptions& options) {
   DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
-  fmt::print("{}", topic_table(listener.endpoints()));
+  const std::vector<DiscoveredEndpoint> endpoints = listener.endpoints();
+  fmt::print("{}", topic_table(endpoints));
+  if (endpoints.empty()) fmt::print(stderr, "{}\n", empty_domain_text(options.dds.domain));
   return 0;
 }
 

@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 #include <set>
 
+#include "deploy/inspect/record/bag.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -39,6 +41,17 @@ std::string silence_text(const std::string& topic, const std::string& recording,
   if (received > 0) return fmt::format("{}: {}", recording, filtered_text(topic, received));
   return fmt::format("{}: no message of '{}'; topics in this recording: {}", recording, topic,
                      or_none({channels.begin(), channels.end()}));
+}
+
+std::string recorded_silence_text(const std::string& topic, const std::string& recording_file,
+                                  std::uint64_t received) {
+  std::vector<std::string> channels;
+  for (const auto& [channel, content] : bag_info(recording_file).channels) channels.push_back(channel);
+  return silence_text(topic, recording_file, channels, received);
+}
+
+std::string empty_domain_text(int domain) {
+  return fmt::format("no process in domain {} writes or reads a topic so far", domain);
 }
 
 }  // namespace sidestep

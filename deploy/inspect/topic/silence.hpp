@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Why nothing of a topic has been printed, in one line: nobody writes it, its writers have sent nothing, or
-/// none of the `received` messages passed the filters.
+/// Why nothing of a topic has been received or printed, in one line: nobody writes it, its writers have sent
+/// nothing, or none of the `received` messages passed the filters.
 [[nodiscard]] std::string silence_text(const std::string& topic, int domain,
                                        const std::vector<DiscoveredEndpoint>& endpoints,
                                        std::uint64_t received);
@@ -18,5 +18,12 @@ namespace sidestep {
 /// The same for a recording with messages on these channels.
 [[nodiscard]] std::string silence_text(const std::string& topic, const std::string& recording,
                                        const std::vector<std::string>& channels, std::uint64_t received);
+
+/// The same for a recording whose channels are read from the file. Throws std::runtime_error if that fails.
+[[nodiscard]] std::string recorded_silence_text(const std::string& topic, const std::string& recording_file,
+                                                std::uint64_t received);
+
+/// What a view of all endpoints says if there is none.
+[[nodiscard]] std::string empty_domain_text(int domain);
 
 }  // namespace sidestep

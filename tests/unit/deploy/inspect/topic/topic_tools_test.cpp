@@ -13,8 +13,10 @@
 #include "common/messaging/message_schema.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "deploy/inspect/record/recording.hpp"
 #include "deploy/inspect/senders/sender_meter.hpp"
 #include "deploy/inspect/topic/graph.hpp"
+#include "deploy/inspect/topic/graph_command.hpp"
 #include "deploy/inspect/topic/rate_meter.hpp"
 #include "deploy/inspect/topic/topic_command.hpp"
 #include "deploy/inspect/topic/topic_table.hpp"
@@ -74,16 +76,17 @@ struct Outcome {
   std::string err;
 };
 
-/// Runs `sidestep topic ARGUMENTS` in this test's domain.
-Outcome topic(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {"sidestep", "topic"});
+/// Runs `sidestep ARGUMENTS`, which is the command that `add` adds, in this test's domain.
+Outcome sidestep_command(void (*add)(const CliCommand&, std::function<int()>&),
+                         std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "sidestep");
   arguments.insert(arguments.end(), {"--domain", std::to_string(test_settings().domain)});
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   CommandLine command_line("test", "sidestep");
   const CliCommand app = command_line.root();
   std::function<int()> action;
-  add_topic_command(app, action);
+  add(app, action);
   Outcome outcome{};
   const CaptureStderr err;
   CaptureStdout out;
@@ -92,6 +95,12 @@ Outcome topic(std::vector<std::string> arguments) {
   outcome.out = out.finish();
   outcome.err = err.text();
   return outcome;
+}
+
+/// Runs `sidestep topic ARGUMENTS` in this test's domain.
+Outcome topic(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "topic");
+  return sidestep_command(add_topic_command, std::move(arguments));
 }
 
 /// Publishes world states in its own thread.
@@ -277,6 +286,50 @@ TEST_CASE("topic delay measures the senders of a topic") {
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.out, Matches("SENDER[^]*\nvision +[1-9][0-9]+ +0 +0 +0 [^]*"));
   CHECK(topic({"delay", "nothing", "--seconds", "1"}).exit_code == kExitFailure);
+}
+
+TEST_CASE("topic delay of a topic that nobody writes says so, with the topics that have a writer") {
+  const Publisher publisher;
+  const Outcome outcome = topic({"delay", "feedback/9", "--seconds", "0.2"});
+  CHECK(outcome.exit_code == kExitFailure);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err,
+             ContainsSubstring("writes 'feedback/9' so far; topics that have a writer: world\n"));
+}
+
+TEST_CASE("topic delay of a topic that a recording lacks names the recorded topics") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("run.mcap");
+  {
+    RecordingWriter writer(file, {"one", "robots:\n  - {id: 0, start_m: [0, 0]}\n", nullptr, true});
+    const std::uint16_t channel = writer.add_channel(topics::kTruth, "truth");
+    msg::GroundTruth truth;
+    truth.header().message_number(1);
+    writer.add(at_ms(20), topics::kTruth, channel, truth.header(), &truth);
+    writer.close();
+  }
+  const Outcome missing = topic({"delay", "feedback/9", "--recording", file});
+  CHECK(missing.exit_code == kExitFailure);
+  CHECK(missing.out.empty());
+  CHECK_THAT(missing.err, StartsWith(file + ": no message of 'feedback/9'; topics in this recording: ") &&
+                              ContainsSubstring("truth"));
+  const Outcome measured = topic({"delay", "truth", "--recording", file});
+  CAPTURE(measured.err);
+  CHECK(measured.exit_code == 0);
+  CHECK_THAT(measured.out, StartsWith("SENDER"));
+}
+
+TEST_CASE("topic list and graph of an empty domain say that it is empty") {
+  const Outcome list = topic({"list", "--seconds", "0.1"});
+  CHECK(list.exit_code == 0);
+  CHECK_THAT(list.out, StartsWith("TOPIC"));
+  const std::string message =
+      "no process in domain " + std::to_string(test_settings().domain) + " writes or reads a topic so far\n";
+  CHECK_THAT(list.err, EndsWith(message));
+  const Outcome graph = sidestep_command(add_graph_command, {"graph", "--seconds", "0.1"});
+  CHECK(graph.exit_code == kExitFailure);
+  CHECK(graph.out.empty());
+  CHECK_THAT(graph.err, EndsWith(message));
 }
 
 TEST_CASE("topic list finds the topics of a running process") {
