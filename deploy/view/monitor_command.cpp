@@ -2,6 +2,7 @@
 #include "deploy/view/monitor_command.hpp"
 
 #include <atomic>
+#include <csignal>
 #include <fmt/format.h>
 #include <memory>
 #include <string>
@@ -107,6 +108,8 @@ void add_monitor_command(const CliCommand& root, std::function<int()>& action) {
       options->dds.identity = {Role::kOperator};
     }
     action = [options] {
+      // The page is served, and the recording written, even if nobody reads the page's address.
+      std::signal(SIGPIPE, SIG_IGN);
       return options->shows_recording() ? monitor_recording(*options) : monitor_system(*options);
     };
   });

@@ -25,6 +25,8 @@ const std::string kScenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.ya
 const std::string kFaultTest = SIDESTEP_SOURCE_DIR "/deploy/scenarios/faults/agent-killed.yaml";
 const std::string kLoneRobot = SIDESTEP_SOURCE_DIR "/deploy/scenarios/league/lone-robot.yaml";
 const std::string kImages = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing-images.yaml";
+const std::string kOnDemand = SIDESTEP_SOURCE_DIR "/deploy/scenarios/on-demand.yaml";
+const std::string kFaultTest = SIDESTEP_SOURCE_DIR "/deploy/scenarios/faults/agent-killed.yaml";
 constexpr auto kPatience = kIsSanitized ? 240s : 60s;
 
 /// Runs a command of bash, in which "$0" is the program; its exit code is that of the first program in a
@@ -40,6 +42,16 @@ struct RunFixture {
   std::string command(const std::string& more, int seconds = 1) const {
     return "\"$0\" run " + kScenario + " --seconds " + std::to_string(seconds) + " --domain " +
            std::to_string(domain.number()) + " " + more;
+  }
+  std::string domain_option() const { return " --domain " + std::to_string(domain.number()); }
+  /// The exit code of a command while a run of the scenario grants. The run is ended afterwards.
+  ProgramRun during_run(const std::string& scenario, const std::string& command) const {
+    return run_in_shell(
+        "\"$0\" run " + scenario + " --seconds 60 --report run.json" + domain_option() +
+            " >run & run=$!\nuntil grep -q 'coordinator grants' run || ! kill -0 $run; do sleep 0.1; "
+            "done\n" +
+            command + "; code=${PIPESTATUS[0]}\nkill -INT $run; wait $run; exit $code",
+        folder);
   }
   std::string text(const std::string& name) const { return text_of(folder.file(name)); }
 
@@ -262,19 +274,39 @@ TEST_CASE("a command that waits for something to print ends with the reader of i
   CHECK(run.wall_s < 10);
 }
 
-TEST_CASE("a command whose output cannot be written says so, and still writes its files") {
+TEST_CASE("a command whose output cannot be written says so, and still does its work") {
   const RunFixture f;
   struct Case {
-    std::string command, file;
+    std::string command;
+    std::string work;               // what a shell must find done afterwards
+    std::string preparation = ":";  // what a shell does before
   };
-  const auto [command, file] = GENERATE_REF(
-      Case{"keys init new-keys", "new-keys/private"}, Case{"building b --cells 200 --robots 2", "b/map.pgm"},
-      Case{"plan empty --svg p.svg", "p.svg"}, Case{"check " + kScenario + " --svg c.svg", "c.svg"},
-      Case{"frame " + kImages + " p.png --detections", "p.png"},
-      Case{"topic list --domain " + std::to_string(f.domain.number()), ""});
+  const std::string records =
+      "\"$0\" simulate " + kScenario + " --seconds 1 --report r.json --record r.mcap >log";
+  const std::string issues = "\"$0\" keys init k >log && \"$0\" keys issue 'agent 3' --keys k >log";
+  const auto [command, work, preparation] =
+      GENERATE_REF(Case{"new hall.yaml", "\"$0\" check hall.yaml >log"},
+                   Case{"keys init new-keys", "test -d new-keys/private"},
+                   Case{"keys issue operator viewer --keys k",
+                        "test -f k/enclaves/operator/key.pem -a -f k/enclaves/viewer/key.pem", issues},
+                   Case{"keys revoke 'agent 3' --keys k", "test ! -e k/enclaves/agent-3", issues},
+                   Case{"keys show --keys k", "true", issues},
+                   Case{"building b --cells 200 --robots 2", "test -f b/map.pgm"},
+                   Case{"plan empty --svg p.svg", "test -f p.svg"},
+                   Case{"check " + kScenario + " --svg c.svg", "test -f c.svg"},
+                   Case{"frame " + kImages + " p.png --detections", "test -f p.png"},
+                   Case{"report r.json --html r.html --svg r.svg",
+                        "grep -q '</html>' r.html && grep -q '</svg>' r.svg", records},
+                   Case{"bag info r.mcap", "true", records},
+                   Case{"record " + kScenario + " --seconds 0.5 --out l.mcap" + f.domain_option(),
+                        "\"$0\" bag info l.mcap >log"},
+                   Case{"graph --svg g.svg" + f.domain_option(), "grep -q '</svg>' g.svg"},
+                   Case{"status" + f.domain_option(), "true"}, Case{"clock" + f.domain_option(), "true"},
+                   Case{"topic list" + f.domain_option(), "true"});
   const auto [output, cause] =
       GENERATE(std::pair(">/dev/full", "No space left on device"), std::pair(">&-", "it is closed"),
                std::pair("| true", "the process that read it has ended"));
+  REQUIRE(run_in_shell(preparation, f.folder).exit_code <= 1);
   const bool is_pipe = output == std::string("| true");
   const ProgramRun run =
       run_in_shell(is_pipe ? "(trap '' PIPE; sleep 0.3; exec \"$0\" " + command + ") | true"
@@ -283,7 +315,75 @@ TEST_CASE("a command whose output cannot be written says so, and still writes it
   CAPTURE(command, output, run.errors);
   CHECK(run.exit_code == 1);
   CHECK_THAT(run.errors, ContainsSubstring(std::string("cannot write to standard output: ") + cause));
-  if (!file.empty()) CHECK(std::filesystem::exists(f.folder.file(file)));
+  CHECK(run_in_shell(work, f.folder).exit_code == 0);
+}
+
+TEST_CASE("a command that prints nothing, or whose exit code says all, ignores that its output is lost") {
+  const TemporaryFolder folder;
+  const auto [command, work] =
+      GENERATE(std::pair("bag cut r.mcap --from 0.2 --out c.mcap", "\"$0\" bag info c.mcap >log"),
+               std::pair("bag merge r.mcap --out m.mcap", "\"$0\" bag info m.mcap >log"),
+               std::pair("test $TEST --junit j.xml", "grep -q '<testsuite .*failures=\"0\"' j.xml"));
+  const std::string output = GENERATE(">/dev/full", ">&-", "| true");
+  REQUIRE(
+      run_in_shell("\"$0\" simulate " + kScenario + " --seconds 1 --record r.mcap >log", folder).exit_code <=
+      1);
+  const ProgramRun run = run_in_shell("TEST=" + kFaultTest + "; \"$0\" " + command + " " + output, folder);
+  CAPTURE(command, output, run.errors);
+  CHECK(run.exit_code == 0);
+  CHECK(run_in_shell(work, folder).exit_code == 0);
+}
+
+TEST_CASE("a monitor serves and records although nobody reads the address of its page") {
+  const RunFixture f;
+  const std::string output = GENERATE(">/dev/full", ">&-", "| true");
+  // As a part of a run, it ends with its input.
+  const ProgramRun run = run_in_shell("\"$0\" monitor " + kScenario + " --of-run --port 0 --record r.mcap" +
+                                          f.domain_option() + " <<<'' " + output,
+                                      f.folder);
+  CAPTURE(output, run.errors);
+  CHECK(run.exit_code == 0);
+  CHECK(run_in_shell("\"$0\" bag info r.mcap >info", f.folder).exit_code == 0);
+}
+
+TEST_CASE("an order whose progress cannot be printed ends its command, and stays in force") {
+  const RunFixture f;
+  const auto [output, cause] =
+      GENERATE(std::pair(">/dev/full", "No space left on device"), std::pair(">&-", "it is closed"),
+               std::pair("| true", "the process that read it has ended"));
+  const std::string go = "(trap '' PIPE; exec \"$0\" go 0 -2,-1.5 --wait" + f.domain_option() + ") ";
+  const ProgramRun run =
+      f.during_run(kOnDemand, go + output + "; code=${PIPESTATUS[0]}; \"$0\" status --once" +
+                                  f.domain_option() + " >status; (exit $code)");
+  CAPTURE(output, run.errors, f.text("status"));
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring(std::string("cannot write to standard output: ") + cause));
+  CHECK_THAT(f.text("status"), ContainsSubstring("operator"));
+}
+
+TEST_CASE("a fault of the network ends in time although nobody reads that it has begun") {
+  const RunFixture f;
+  const std::string output = GENERATE(">/dev/full", "| true");
+  const std::string fault =
+      "\"$0\" fault network --target 'agent 0' --cut --seconds 0.5" + f.domain_option() + " " + output;
+  const std::string go = "\"$0\" go 0 -2,-1.5" + f.domain_option() + " >go";
+  const ProgramRun run = f.during_run(kOnDemand + " --faults",
+                                      fault + "; code=${PIPESTATUS[0]}; " + go + " || code=9; (exit $code)");
+  CAPTURE(output, run.errors, f.text("go"));
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring("cannot write to standard output: "));
+}
+
+TEST_CASE("pictures of a run's images are written although nobody reads their names") {
+  const RunFixture f;
+  const std::string output = GENERATE(">/dev/full", "| true");
+  const ProgramRun run =
+      f.during_run(kImages, "\"${0%/*}/sidestep-vision\" view --scenario " + kImages +
+                                " --out pictures --count 2" + f.domain_option() + " " + output);
+  CAPTURE(output, run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring("cannot write to standard output: "));
+  CHECK(std::filesystem::exists(f.folder.file("pictures/camera-0-0002.png")));
 }
 
 TEST_CASE("a simulated run ends normally if stderr is closed or its disk is full") {

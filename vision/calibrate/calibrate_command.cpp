@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/command_line.hpp"
 #include "vision/calibrate/calibrate_colours.hpp"
@@ -21,11 +22,7 @@ struct CalibrateOptions {
 };
 
 void write_out(const std::string& text, const std::string& path) {
-  if (path.empty()) {
-    fmt::print("{}", text);
-    return;
-  }
-  write_file(path, text);
+  path.empty() ? write_output(text) : write_file(path, text);
 }
 
 int run_colours(const CalibrateOptions& options) {

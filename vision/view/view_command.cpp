@@ -2,7 +2,8 @@
 #include "vision/view/view_command.hpp"
 
 #include <algorithm>
-#include <fmt/core.h>
+#include <csignal>
+#include <fmt/format.h>
 #include <memory>
 #include <stdexcept>
 
@@ -47,6 +48,8 @@ class Viewer {
     return std::ranges::all_of(progress_,
                                [this](const Progress& one) { return one.count >= options_.count; });
   }
+  /// What write_text() returned for the first line that could not be printed; 0: none.
+  int output_error() const { return output_error_; }
 
  private:
   /// The state of writing one camera's pictures.
@@ -70,8 +73,10 @@ class Viewer {
     const std::string file =
         fmt::format("{}/camera-{}-{:04}.png", options_.folder, image.camera(), progress.count);
     write_png(picture, file);
-    print_to(stdout, "{}: {} robots, {} balls, {} obstacles\n", file, detections_.robots().size(),
-             detections_.ball_count(), detections_.obstacle_count());
+    const int error = write_text(
+        stdout, fmt::format("{}: {} robots, {} balls, {} obstacles\n", file, detections_.robots().size(),
+                            detections_.ball_count(), detections_.obstacle_count()));
+    if (output_error_ == 0) output_error_ = error;
     if (is_done()) bus_.stop();
   }
 
@@ -82,9 +87,12 @@ class Viewer {
   std::vector<Progress> progress_;  ///< indexed by camera
   msg::WorldState world_;
   msg::DetectionFrame detections_;
+  int output_error_ = 0;
 };
 
 int view(const ViewOptions& options) {
+  // The pictures are written even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
   const Scenario scenario = load_scenario(options.scenario_file);
   if (!scenario.vision.images) {
     throw std::invalid_argument(options.scenario_file +
@@ -96,6 +104,7 @@ int view(const ViewOptions& options) {
   const Viewer viewer(bus, scenario, options);
   bus.run_until(bus.now() +
                 from_seconds(options.timeout_s + options.period_s * static_cast<double>(options.count)));
+  require_printed(viewer.output_error());
   if (viewer.is_done()) return 0;
   fmt::print(stderr, "sidestep-vision view: some cameras sent no valid images, or too few\n");
   return kExitFailure;

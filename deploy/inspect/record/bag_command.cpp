@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/file/console.hpp"
 #include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
 #include "deploy/inspect/record/bag.hpp"
@@ -45,7 +46,7 @@ void add_bag_command(const CliCommand& root, std::function<int()>& action) {
   info.on_parsed([options, &action] {
     action = [options] {
       const BagInfo content = bag_info(options->file);
-      fmt::print("{}", to_text(content));
+      write_output(to_text(content));
       return exit_code_for(content.damage);
     };
   });

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
@@ -39,7 +40,7 @@ int record_messages(const RecordOptions& options) {
   else
     bus.run();
   writer->close();
-  fmt::print("{}: {} messages\n", options.recording_file, writer->messages());
+  print_output("{}: {} messages\n", options.recording_file, writer->messages());
   return writer->messages() > 0 ? 0 : kExitFailure;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/file/console.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "common/process/process.hpp"
@@ -68,7 +69,7 @@ class Replay {
     bus_.run_until(bus_.now() + kDiscovery);
     const PlaybackResult result = playback_.play();
     bus_.run_until(bus_.now() + kWriterLinger);
-    fmt::print("{} messages written\n", written_);
+    print_output("{} messages written\n", written_);
     if (!result.damage.empty())
       fmt::print(stderr, "{}: {}; earlier messages were written\n", options_.file, result.damage);
     return is_refused_ || !result.damage.empty() ? kExitFailure : 0;

@@ -44,7 +44,7 @@ int list_topics(const TopicOptions& options) {
   const StopSignals stop_signals([&listener] { listener.stop(); });
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
   const std::vector<DiscoveredEndpoint> endpoints = listener.endpoints();
-  fmt::print("{}", topic_table(endpoints));
+  write_output(topic_table(endpoints));
   if (endpoints.empty()) fmt::print(stderr, "{}\n", empty_domain_text(options.dds.domain));
   return 0;
 }
@@ -58,7 +58,7 @@ int show_topic(const TopicOptions& options) {
     print_missing_topic(options, "neither a writer nor a reader", listener);
     return kExitFailure;
   }
-  fmt::print("{}", details);
+  write_output(details);
   return 0;
 }
 

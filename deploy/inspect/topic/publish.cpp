@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/file/console.hpp"
 #include "common/json/json_text.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "common/messaging/dds/raw_publisher.hpp"
@@ -101,7 +102,7 @@ int publish_topic(const TopicOptions& options) {
     fmt::print(stderr, "not all readers have acknowledged\n");
     return kExitFailure;
   }
-  fmt::print("sent to {} reader(s)\n", publisher.readers());
+  print_output("sent to {} reader(s)\n", publisher.readers());
   return 0;
 }
 

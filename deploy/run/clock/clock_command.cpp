@@ -8,6 +8,7 @@
 #include <string>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/host_name.hpp"
 #include "common/process/process.hpp"
@@ -90,7 +91,7 @@ int show_clocks(const ClockOptions& options) {
   const auto rows = [&] { return prober.survey().rows(bus.now(), options.reference); };
   if (options.once || !terminal_of(STDOUT_FILENO).can_redraw) {
     bus.run_until(bus.now() + kOnceDuration);
-    fmt::print("{}", to_table(rows(), options.reference_name));
+    write_output(to_table(rows(), options.reference_name));
   } else {
     RedrawnText table(stdout);
     const auto refresh = [&] { table.draw(to_table(rows(), options.reference_name)); };

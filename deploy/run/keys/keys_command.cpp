@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/keys/key_folder.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/process.hpp"
@@ -35,7 +36,7 @@ Duration days(double count) { return from_seconds(count * 24 * 3600); }
 int init(const KeysOptions& options) {
   const Time now = DdsBus::clock();
   KeyStore::create(options.folder, now - kClockSlack, now + days(options.days));
-  fmt::print(
+  print_output(
       "made {}: two certificate authorities, valid until {}\n"
       "{}/private holds their private keys: anyone who can read them can command all robots; no robot needs "
       "them\n",
@@ -51,20 +52,22 @@ int issue(const KeysOptions& options) {
   }
   if (identities.empty()) throw UsageError("expected --scenario FILE, or identities: " + identity_forms());
   KeyStore store(options.folder);
+  if (options.scenario_file.empty() && !options.again)
+    for (const Identity& identity : identities)
+      if (store.has(identity))
+        throw std::invalid_argument(to_text(identity) + " already has a key; --again makes a new one");
   const Time now = DdsBus::clock();
   std::size_t issued = 0;
+  // Printed at the end, so that a missing reader does not leave identities without keys.
+  std::string text;
   for (const Identity& identity : identities) {
-    if (store.has(identity) && !options.again) {
-      if (options.scenario_file.empty())
-        throw std::invalid_argument(to_text(identity) + " already has a key; --again makes a new one");
-      continue;
-    }
+    if (store.has(identity) && !options.again) continue;
     const std::string folder = store.issue(identity, now - kClockSlack, now + days(options.days));
-    if (identities.size() <= 4) fmt::print("{}: {}\n", to_text(identity), folder);
+    if (identities.size() <= 4) text += fmt::format("{}: {}\n", to_text(identity), folder);
     ++issued;
   }
-  fmt::print(
-      "issued {} key{}{}\n", issued, issued == 1 ? "" : "s",
+  print_output(
+      "{}issued {} key{}{}\n", text, issued, issued == 1 ? "" : "s",
       issued < identities.size() ? fmt::format("; {} already had one", identities.size() - issued) : "");
   return 0;
 }
@@ -74,20 +77,21 @@ int revoke(const KeysOptions& options) {
   if (identities.empty()) throw UsageError("expected identities: " + identity_forms());
   KeyStore store(options.folder);
   std::vector<std::string> unknown;
+  std::string text;
   for (const Revocation& done : store.revoke(identities, DdsBus::clock() - kClockSlack)) {
     const std::string name = to_text(done.identity);
     if (done.revoked > 0)
-      fmt::print("revoked {} key{} of {}\n", done.revoked, done.revoked == 1 ? "" : "s", name);
+      text += fmt::format("revoked {} key{} of {}\n", done.revoked, done.revoked == 1 ? "" : "s", name);
     else if (done.before > 0)
-      fmt::print("{}: already revoked\n", name);
+      text += fmt::format("{}: already revoked\n", name);
     else
       unknown.push_back(name);
   }
-  fmt::print(
-      "processes that use {}/enclaves refuse them within a second; copy {}/public/crl.pem into the folders "
-      "of keys "
-      "on other hosts\n",
-      options.folder, options.folder);
+  // The problems below matter more than a missing reader.
+  const int output_error =
+      write_text(stdout, fmt::format("{}processes that use {}/enclaves refuse them within a second; copy "
+                                     "{}/public/crl.pem into the folders of keys on other hosts\n",
+                                     text, options.folder, options.folder));
   std::vector<std::string> problems;
   if (!unknown.empty())
     problems.push_back(
@@ -98,23 +102,26 @@ int revoke(const KeysOptions& options) {
           fmt::format("the owner of this key is unknown, so it is not revoked: {}", key.problem));
   }
   if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "\n")));
+  require_printed(output_error);
   return 0;
 }
 
 int show(const KeysOptions& options) {
   const KeyStore store(options.folder);
   const Time now = DdsBus::clock();
-  fmt::print("{:<24} {:<22} {:<10} {}\n", "identity", "valid until", "state", "serial number");
+  std::string table =
+      fmt::format("{:<24} {:<22} {:<10} {}\n", "identity", "valid until", "state", "serial number");
   for (const IssuedKey& key : store.keys()) {
-    fmt::print("{:<24} {:<22} {:<10} {}\n", key.name, key.problem.empty() ? date_text(key.not_after) : "",
-               key.is_revoked                   ? "revoked"
-               : !key.problem.empty()           ? "unreadable"
-               : key.not_after < now            ? "expired"
-               : key.not_after < now + days(14) ? "expires soon"
-                                                : "valid",
-               key.serial);
+    table += fmt::format("{:<24} {:<22} {:<10} {}\n", key.name,
+                         key.problem.empty() ? date_text(key.not_after) : "",
+                         key.is_revoked                   ? "revoked"
+                         : !key.problem.empty()           ? "unreadable"
+                         : key.not_after < now            ? "expired"
+                         : key.not_after < now + days(14) ? "expires soon"
+                                                          : "valid",
+                         key.serial);
   }
-  fmt::print("authorities: valid until {}\n", date_text(store.authorities_expire()));
+  print_output("{}authorities: valid until {}\n", table, date_text(store.authorities_expire()));
   return 0;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/client/order_client.hpp"
+#include "common/file/console.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
@@ -74,7 +75,7 @@ int show_status(const OrderOptions& options) {
     bus.run_until(bus.now() + kOnceDuration);
     for (int i = 0; i < kMaxOncePolls && !watch.is_complete(); ++i)
       bus.run_until(bus.now() + kOncePollPeriod);
-    fmt::print("{}", to_table(client.reports(), watch.all_hindrances()));
+    write_output(to_table(client.reports(), watch.all_hindrances()));
   } else {
     RedrawnText table(stdout);
     const auto refresh = [&] { table.draw(to_table(client.reports(), watch.all_hindrances())); };
@@ -157,8 +158,8 @@ int zone(const OrderOptions& options) {
   OrderSession session(options);
   if (!options.removes) return session.finish({session.client().zone(options.zone, zone_of(options))});
   if (const auto others = session.zones_without(options.zone)) {
-    fmt::print("{}\n",
-               unknown_zone_text(options.zone, client_of(options), client_name(options.client), *others));
+    print_output("{}\n",
+                 unknown_zone_text(options.zone, client_of(options), client_name(options.client), *others));
     return kExitFailure;
   }
   return session.finish({session.client().remove_zone(options.zone)});

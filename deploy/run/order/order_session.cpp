@@ -65,10 +65,7 @@ void OrderSession::stop_if_done() {
 
 void OrderSession::on_change(const SentOrder& sent) {
   // Its phase is not news while the robot is known not to drive.
-  if (is_over(sent) || shown_[sent.handle].printed.empty()) {
-    print_output("{}\n", to_line(sent));
-    std::fflush(stdout);
-  }
+  if (is_over(sent) || shown_[sent.handle].printed.empty()) print_output("{}\n", to_line(sent));
   stop_if_done();
 }
 
@@ -85,7 +82,6 @@ void OrderSession::print_hindrances() {
     if (shown.latest == shown.printed || bus_.now() - shown.latest_since < kMinHindrance) continue;
     shown.printed = shown.latest;
     print_output("{}\n", to_line(sent, hindrances));
-    std::fflush(stdout);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "common/file/console.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
 #include "common/marking/pose_error.hpp"
@@ -54,7 +55,7 @@ void add_pattern_command(const CliCommand& root, std::function<int()>& action) {
     action = [options] {
       const MarkerLayout layout =
           options->layout_file.empty() ? butterfly() : load_layout(options->layout_file);
-      fmt::print("{}", describe_layout(layout, options->dot_mm * 1e-3));
+      write_output(describe_layout(layout, options->dot_mm * 1e-3));
       return 0;
     };
   });

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/file/console.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/robot_notices.hpp"
 #include "common/motion/version.hpp"
@@ -65,8 +66,8 @@ int attest(const AttestOptions& options) {
   bus.run_until(bus.now() + AttestationExchange::kTimeout);
   const AttestationExchange& exchange = attestation.exchange();
   if (exchange.state() == AttestationExchange::State::kAccepted) {
-    fmt::print("robot {} counts as absent in epoch {}, until it registers\n", options.robot,
-               *attestation.epoch());
+    print_output("robot {} counts as absent in epoch {}, until it registers\n", options.robot,
+                 *attestation.epoch());
     return 0;
   }
   const std::string reason =

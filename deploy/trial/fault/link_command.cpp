@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/fault/link_command.hpp"
 
+#include <csignal>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "common/file/console.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/stop_signals.hpp"
@@ -30,20 +32,24 @@ LinkFault fault_from(const LinkOptions& options, bool is_partition) {
 
 void heal(const std::vector<std::string>& namespaces) {
   for (const std::string& name : namespaces) clear_link_fault(name);
-  fmt::print("{}: healed\n", fmt::join(namespaces, ", "));
+  print_output("{}: healed\n", fmt::join(namespaces, ", "));
 }
 
 int apply(const LinkOptions& options, const LinkFault& fault) {
+  // The fault ends after --seconds even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
   const auto namespaces = namespaces_of_host(options.host);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
   for (const std::string& name : namespaces) set_link_fault(name, fault);
-  fmt::print("{}: drops {:.4g} % of incoming and {:.4g} % of outgoing packets\n", fmt::join(namespaces, ", "),
-             100 * fault.loss_in, 100 * fault.loss_out);
-  if (!options.seconds) return 0;
-  std::fflush(stdout);
-  loop.run_until(EventLoop::now() + from_seconds(*options.seconds));
-  heal(namespaces);
+  const int output_error =
+      write_text(stdout, fmt::format("{}: drops {:.4g} % of incoming and {:.4g} % of outgoing packets\n",
+                                     fmt::join(namespaces, ", "), 100 * fault.loss_in, 100 * fault.loss_out));
+  if (options.seconds) {
+    loop.run_until(EventLoop::now() + from_seconds(*options.seconds));
+    heal(namespaces);
+  }
+  require_printed(output_error);
   return 0;
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/fault/network_command.hpp"
 
+#include <csignal>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "common/file/console.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/impairment.hpp"
 #include "common/process/command_line.hpp"
@@ -46,6 +48,8 @@ void send(OperatorChannel& channel, msg::NetworkFault fault) {
 }
 
 int apply(const NetworkOptions& options) {
+  // The fault ends after --seconds even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
   const auto target = parse_fault_target(options.target);
   const msg::NetworkFault fault = fault_from(options, target->number);
   OperatorChannel channel(options.dds, topics::kNetworkFault);
@@ -54,12 +58,13 @@ int apply(const NetworkOptions& options) {
   const std::vector<std::string> impaired =
       wait_for_targets(channel, target->participant, "; start the run with --faults");
   send(channel, fault);
-  fmt::print("applied to {}\n", fmt::join(impaired, ", "));
-  if (!options.seconds) return 0;
-  std::fflush(stdout);
-  loop.run_until(EventLoop::now() + from_seconds(*options.seconds));
-  send(channel, encode(kUnimpairedLink, target->number, 0));
-  fmt::print("cleared\n");
+  int output_error = write_text(stdout, fmt::format("applied to {}\n", fmt::join(impaired, ", ")));
+  if (options.seconds) {
+    loop.run_until(EventLoop::now() + from_seconds(*options.seconds));
+    send(channel, encode(kUnimpairedLink, target->number, 0));
+    if (output_error == 0) output_error = write_text(stdout, "cleared\n");
+  }
+  require_printed(output_error);
   return 0;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/client/disturbance_client.hpp"
+#include "common/file/console.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/disturbance_answer.hpp"
 #include "common/motion/version.hpp"
@@ -78,8 +79,9 @@ int disturb(const RobotOptions& options, Kind kind) {
   if (*answer != msg::DisturbanceResult::FAULT_APPLIED)
     throw std::runtime_error("the simulator refuses the fault: " + refusal_text(options.robot, *answer));
   wait_until_acknowledged(channel);
-  fmt::print("applied by the simulator{}\n",
-             kind == Kind::DISTURBANCE_PLACE ? ", which puts the robot down once the place is granted" : "");
+  print_output("applied by the simulator{}\n", kind == Kind::DISTURBANCE_PLACE
+                                                   ? ", which puts the robot down once the place is granted"
+                                                   : "");
   return 0;
 }
 

@@ -84,7 +84,7 @@ int check_files(const CheckOptions& options) {
   // The picture is drawn even if the reader of the output disappears.
   std::signal(SIGPIPE, SIG_IGN);
   if (options.prints_schema) {
-    fmt::print("{}", scenario_schema());
+    write_output(scenario_schema());
     return 0;
   }
   const bool is_one = options.files.size() == 1;

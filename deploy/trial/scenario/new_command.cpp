@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "deploy/trial/scenario/scenario_schema.hpp"
 #include "deploy/trial/scenario/scenario_template.hpp"
@@ -18,7 +19,7 @@ int write_new_scenario(const std::string& path) {
   if (std::filesystem::exists(std::filesystem::symlink_status(path, error)))
     throw std::invalid_argument(path + " exists and is not overwritten; expected the name of a new file");
   write_file(path, scenario_template(scenario_schema_path()));
-  fmt::print(
+  print_output(
       "wrote {0}: a hall with a wall, a door and three robots\n"
       "  sidestep check {0}                             checks and draws it\n"
       "  sidestep simulate {0} --svg paths.svg          runs it in virtual time\n"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/simulate/building/building_command.hpp"
 
-#include <fmt/core.h>
 #include <memory>
 
+#include "common/file/console.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/output_paths.hpp"
 #include "deploy/trial/simulate/building/building.hpp"
@@ -36,7 +36,7 @@ void add_building_command(const CliCommand& root, std::function<int()>& action) 
       require_new_output({"FOLDER", options->folder + "/" + file}, *overwrites);
     action = [options] {
       write_building(*options);
-      fmt::print("{0}/map.yaml, {0}/map.pgm, {0}/scenario.yaml\n", options->folder);
+      print_output("{0}/map.yaml, {0}/map.pgm, {0}/scenario.yaml\n", options->folder);
       return 0;
     };
   });
