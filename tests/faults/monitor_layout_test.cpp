@@ -2,13 +2,13 @@
 // What a person sees of the monitor's page on a desk, on a small screen and on a phone, in both themes.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/catch.hpp"
 #include "tests/faults/browser.hpp"
 #include "tests/faults/monitored_run.hpp"
+#include "tests/faults/page_screens.hpp"
 #include "tests/faults/shown_recording.hpp"
 
 namespace sidestep::monitor_layout_test {
@@ -16,47 +16,7 @@ namespace sidestep::monitor_layout_test {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-struct Screen {
-  const char* theme;
-  int width_px, height_px;
-
-  bool is_phone() const { return width_px == 400; }
-  std::string name(const std::string& state) const { return fmt::format("{}-{}-{}", state, width_px, theme); }
-};
-
-constexpr Screen kScreens[] = {{"dark", 1500, 900},  {"dark", 1000, 700},  {"dark", 400, 800},
-                               {"light", 1500, 900}, {"light", 1000, 700}, {"light", 400, 800}};
-
-/// Saves a picture of the page if the environment names a folder for it.
-void keep_screenshot(Browser& page, const std::string& name) {
-  const char* folder = std::getenv("SIDESTEP_SCREENSHOTS");
-  if (folder) page.save_screenshot(fmt::format("{}/{}.png", folder, name));
-}
-
-void open_on(Browser& page, const Screen& screen, const std::string& url) {
-  page.open("about:blank");
-  page.resize(screen.width_px, screen.height_px);
-  page.prefer(screen.theme);
-  page.open(url);
-  page.load_script(SIDESTEP_SOURCE_DIR "/tests/faults/page_checks.js");
-  REQUIRE(page.run("return innerWidth") == screen.width_px);
-}
-
-/// Lists the problems that a function of page_checks.js finds.
-std::string found_by(Browser& page, const std::string& call) {
-  std::string all;
-  for (const Json& problem : page.run("return pageChecks." + call)) all += problem.get<std::string>() + "\n";
-  return all;
-}
-
-void check_controls_and_texts(Browser& page, const Screen& screen, const std::string& state) {
-  INFO(screen.name(state));
-  CHECK(found_by(page, "hiddenControls()").empty());
-  CHECK(found_by(page, "faintTexts()").empty());
-  keep_screenshot(page, screen.name(state));
-}
-
-void check_layout(Browser& page, const Screen& screen, const std::string& state) {
+void check_layout(Browser& page, const PageScreen& screen, const std::string& state) {
   INFO(screen.name(state));
   CHECK(page.run("return document.documentElement.dataset.theme") == screen.theme);
   if (screen.width_px == 1500) CHECK(page.run("return pageChecks.floorShare()") >= 0.55);
@@ -68,7 +28,7 @@ void check_layout(Browser& page, const Screen& screen, const std::string& state)
   check_controls_and_texts(page, screen, state);
 }
 
-void check_numbers(Browser& page, const Screen& screen) {
+void check_numbers(Browser& page, const PageScreen& screen) {
   INFO(screen.name("numbers"));
   (void)page.wait_until("pageChecks.illegibleRobots().length === 0");
   CHECK(found_by(page, "illegibleRobots()").empty());
@@ -80,7 +40,7 @@ void settle(Browser& page) {
       "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))");
 }
 
-void check_menus(Browser& page, const Screen& screen) {
+void check_menus(Browser& page, const PageScreen& screen) {
   for (const char* menu : {"layer-list", "panel-menu", "columns-robots"}) {
     page.run(fmt::format("document.getElementById('{}').scrollIntoView({{block: 'nearest'}})", menu));
     settle(page);  // scrolling closes menus
@@ -101,7 +61,7 @@ void check_menus(Browser& page, const Screen& screen) {
   }
 }
 
-void check_panels(Browser& page, const Screen& screen) {
+void check_panels(Browser& page, const PageScreen& screen) {
   for (const char* panel : {"events", "coordinators", "topics", "inspect", "robots"}) {
     page.click(fmt::format("tab-{}", panel));
     CHECK(page.run(fmt::format("return document.getElementById('panel-{}').innerText.length", panel)) > 10);
@@ -109,7 +69,7 @@ void check_panels(Browser& page, const Screen& screen) {
   }
 }
 
-void check_selection(Browser& page, const Screen& screen, int robot) {
+void check_selection(Browser& page, const PageScreen& screen, int robot) {
   INFO(screen.name("selection"));
   const int before = page.run(fmt::format("return pageChecks.markedPixels({})", robot));
   page.run(fmt::format("document.querySelector('#panel-robots [data-key=\"{}\"]').click()", robot));
@@ -123,7 +83,7 @@ void check_selection(Browser& page, const Screen& screen, int robot) {
 TEST_CASE("a recording of 22 robots is shown well on each screen, in both themes", "[slow]") {
   ShownRecording recording("two-teams-22.yaml", {"--seconds", "8"});
   Browser page;
-  for (const Screen& screen : kScreens) {
+  for (const PageScreen& screen : kPageScreens) {
     INFO(screen.name("recording"));
     open_on(page, screen, recording.url());
     REQUIRE(page.wait_until("window.monitor && monitor.frame && monitor.whole && monitor.whole.is_over"));
@@ -169,7 +129,7 @@ TEST_CASE("a recording of 22 robots is shown well on each screen, in both themes
 TEST_CASE("robots of a large building have legible marks, and a key shows them large", "[slow]") {
   ShownRecording recording("house.yaml", {"--seconds", "2"});
   Browser page;
-  open_on(page, kScreens[0], recording.url());
+  open_on(page, kPageScreens[0], recording.url());
   REQUIRE(page.wait_until("window.monitor && monitor.drawn.marks.length > 0"));
   CHECK(page.run("return monitor.drawn.marks.every((mark) => mark.r >= 6)") == true);
   const double whole = page.run("return monitor.floor.view.scale");
@@ -185,7 +145,7 @@ TEST_CASE("robots of a large building have legible marks, and a key shows them l
 TEST_CASE("panels are dragged over the floor, closed and opened again, and stay there", "[slow]") {
   ShownRecording recording("crossing.yaml", {"--seconds", "2"});
   Browser page;
-  open_on(page, kScreens[0], recording.url());
+  open_on(page, kPageScreens[0], recording.url());
   REQUIRE(page.wait_until("window.monitor && monitor.panels"));
   page.run(
       "const tab = document.getElementById('tab-events'), box = tab.getBoundingClientRect(); "
@@ -195,11 +155,11 @@ TEST_CASE("panels are dragged over the floor, closed and opened again, and stay 
   CHECK(page.run("const b = " + window +
                  ".getBoundingClientRect(); return b.x <= 90 && b.y <= 480 && b.right > "
                  "90 && b.bottom > 480") == true);
-  check_controls_and_texts(page, kScreens[0], "window");
+  check_controls_and_texts(page, kPageScreens[0], "window");
   page.click("close-robots");
   CHECK(page.run("return document.getElementById('panel-robots').hidden") == true);
   page.open("about:blank");
-  open_on(page, kScreens[0], recording.url());
+  open_on(page, kPageScreens[0], recording.url());
   REQUIRE(page.wait_until("window.monitor && monitor.panels"));
   CHECK(page.run("return " + window + " !== null") == true);
   CHECK(page.run("return document.getElementById('panel-robots').hidden") == true);
@@ -216,7 +176,7 @@ TEST_CASE("the planning page is legible on each screen, in both themes, with a l
           "[slow]") {
   ShownRecording recording("crossing.yaml", {"--seconds", "1"});
   Browser page;
-  for (const Screen& screen : kScreens) {
+  for (const PageScreen& screen : kPageScreens) {
     open_on(page, screen, recording.url() + "planning.html");
     REQUIRE(page.wait_until("window.planning && planning.plan && planning.plan.nodes.length > 100"));
     check_controls_and_texts(page, screen, "planning");
@@ -248,7 +208,7 @@ TEST_CASE("a run is shown and commanded on each screen, in both themes", "[both-
   const MonitorProcess monitor(run, {"--control"});
   Browser page;
   double x_m = -1;
-  for (const Screen& screen : kScreens) {
+  for (const PageScreen& screen : kPageScreens) {
     INFO(screen.name("run"));
     open_on(page, screen, monitor.url());
     REQUIRE(

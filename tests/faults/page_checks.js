@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Defines window.pageChecks: what monitor_layout_test.cpp asks about a page in a browser. Lists are empty if all is well.
+// Defines window.pageChecks: what tests ask about a page in a browser. Lists are empty if all is well.
 
 /** Names an element for people. */
 const nameOf = (node) => node.id || node.getAttribute("aria-label") || node.textContent.trim().slice(0, 40) || node.tagName;
@@ -18,8 +18,44 @@ function groundOf(node) {
   if (!node) return [255, 255, 255];
   const [r, g, b, a] = coloursOf(getComputedStyle(node).backgroundColor);
   if (a === 1) return [r, g, b];
-  const behind = groundOf(node.parentElement);
-  return [r, g, b].map((v, i) => a * v + (1 - a) * behind[i]);
+  return over([r, g, b, a], groundOf(node.parentElement));
+}
+
+/** A colour over another one. */
+const over = ([r, g, b, a], behind) => [r, g, b].map((v, i) => a * v + (1 - a) * behind[i]);
+
+/** The filling of a shape or text of a picture as red, green, blue and opacity; null if it has none. */
+function fillingOf(node) {
+  const style = getComputedStyle(node);
+  if (!style.fill.startsWith("rgb")) return null;
+  const [r, g, b, a] = coloursOf(style.fill);
+  return [r, g, b, a * style.fillOpacity * style.opacity];
+}
+
+/** What is behind a text of a picture: its halo, or the filled shapes below its middle, or what is behind the picture. */
+function groundInPicture(text) {
+  const style = getComputedStyle(text);
+  if (style.stroke.startsWith("rgb") && style.paintOrder.startsWith("stroke")) return coloursOf(style.stroke).slice(0, 3);
+  const [x, y] = [scrollX, scrollY];
+  text.scrollIntoView({block: "nearest", inline: "nearest"});
+  const box = text.getBoundingClientRect();
+  const nodes = document.elementsFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+  scrollTo(x, y);
+  const fillings = [];
+  for (const node of nodes.slice(nodes.indexOf(text) + 1)) {
+    if (!(node instanceof SVGGeometryElement)) continue;
+    const filling = fillingOf(node);
+    if (filling) fillings.push(filling);
+    if (filling && filling[3] === 1) break;
+  }
+  return fillings.reduceRight((behind, filling) => over(filling, behind), groundOf(text.closest("svg").parentElement));
+}
+
+/** The contrast of a text to what is behind it. */
+function contrastOf(node) {
+  if (!(node instanceof SVGElement)) return contrast(coloursOf(getComputedStyle(node).color).slice(0, 3), groundOf(node));
+  const ground = groundInPicture(node);
+  return contrast(over(fillingOf(node), ground), ground);
 }
 
 function luminance(colour) {
@@ -59,7 +95,7 @@ function faintTexts() {
   while (texts.nextNode()) {
     const node = texts.currentNode.parentElement;
     if (!texts.currentNode.textContent.trim() || !isDrawn(node) || node.tagName === "OPTION") continue;
-    const ratio = contrast(coloursOf(getComputedStyle(node).color).slice(0, 3), groundOf(node));
+    const ratio = contrastOf(node);
     if (ratio < 4.5) problems.push(`${nameOf(node)}: ${ratio.toFixed(2)}`);
   }
   return problems;
@@ -91,6 +127,11 @@ function illegibleRobots() {
         Math.abs(label.y - other.y) < (label.height + height) / 2 - 1;
     for (const other of labels)
       if (other.id > label.id && across(other, other.width, other.height)) problems.push(`${label.id} and ${other.id}: numbers overlap`);
+    for (const mark of marks) {
+      const beside = (distance, size) => Math.max(Math.abs(distance) - size / 2, 0);
+      if (Math.hypot(beside(label.x - mark.x, label.width), beside(label.y - mark.y, label.height)) < mark.r - 1)
+        problems.push(`${label.id}: its number covers robot ${mark.id}`);
+    }
   }
   return problems;
 }

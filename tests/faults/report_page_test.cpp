@@ -11,6 +11,7 @@
 #include "tests/catch.hpp"
 #include "tests/faults/browser.hpp"
 #include "tests/faults/launched_run.hpp"
+#include "tests/faults/page_screens.hpp"
 #include "tests/text_of.hpp"
 
 namespace sidestep::report_page_test {
@@ -43,25 +44,28 @@ TEST_CASE("a run draws a picture that plays, and its report becomes a page that 
   for (const auto& [robot, path] : report["paths"].items()) CHECK(path.size() > 3);
   write_file(page_file, report_page(report));
 
-  for (const int width_px : {1500, 1000, 400}) {
-    CAPTURE(width_px);
-    Browser browser(width_px, 900);
-    browser.open("file://" + picture_file);
-    CHECK(plays(browser, "document.documentElement"));
+  Browser browser;
+  browser.open("file://" + picture_file);
+  CHECK(plays(browser, "document.documentElement"));
 
-    browser.open("file://" + page_file);
-    CHECK(plays(browser, "document.querySelector('.floor svg')"));
-    CHECK(browser.run("return document.documentElement.scrollWidth <= window.innerWidth") == true);
+  for (const PageScreen& screen : kPageScreens) {
+    INFO(screen.name("report"));
+    open_on(browser, screen, "file://" + page_file);
+    const std::string ground = screen.theme == std::string("dark") ? "rgb(20, 24, 29)" : "rgb(244, 245, 247)";
+    CHECK(browser.run("return getComputedStyle(document.body).backgroundColor") == ground);
     CHECK(browser.run("return document.getElementById('player').hidden") == false);
+    CHECK(plays(browser, "document.querySelector('.floor svg')"));
     // The time of an event seeks to it: at the first grant the robot is at its start, and then it has driven.
     browser.run("document.querySelector('button[data-at=\"0.000\"]').click()");
     const auto start = robot_at(browser);
+    check_controls_and_texts(browser, screen, "report-start");
     browser.run(
         "const s = document.querySelector('#player input'); s.value = s.max; s.dispatchEvent(new "
-        "Event('input'))");
+        "Event('input')); document.querySelector('.floor').scrollLeft = 0; scrollTo(0, 0)");
     const auto end = robot_at(browser);
     CHECK(std::abs(end.first - start.first) > 50);
     CHECK(browser.run("return document.querySelector('#player button').textContent") == "Play");
+    check_controls_and_texts(browser, screen, "report-end");
     browser.run("document.querySelector('#player button').click()");
     CHECK(plays(browser, "document.querySelector('.floor svg')"));
     CHECK(browser.logged_errors() == "");
