@@ -9,6 +9,7 @@
 #include "common/svg/palette.hpp"
 #include "deploy/audit/metrics/report.hpp"
 #include "tests/catch.hpp"
+#include "tests/text_of.hpp"
 
 namespace sidestep::run_picture_test {
 
@@ -97,6 +98,17 @@ TEST_CASE("the picture of a run has starts, goals, directions, a scale and a leg
   REQUIRE(std::regex_search(
       svg, arrow, std::regex("<path d='M([0-9.]+) [0-9.]+L([0-9.]+) [0-9.]+L[^']*z[^']*' fill='#")));
   CHECK(std::stod(arrow[1]) > std::stod(arrow[2]));
+}
+
+TEST_CASE("the shipped pictures of runs play, and have starts, goals and a scale") {
+  // If not: deploy/scenarios/pictures/draw
+  const std::string name = GENERATE("crossing", "circle-20");
+  CAPTURE(name);
+  const std::string svg = text_of(SIDESTEP_SOURCE_DIR "/deploy/scenarios/pictures/" + name + ".svg");
+  for (const char* part : {">start</text>", ">goal</text>", "<animateTransform "})
+    CHECK((svg.find(part) != std::string::npos));
+  CHECK(std::regex_search(svg, std::regex(">[0-9.]+ m</text>")));
+  CHECK_THAT(svg.substr(0, 1000), ContainsSubstring(">passed: "));
 }
 
 TEST_CASE("each robot has a colour of its own, in which its path, start and goal are drawn") {

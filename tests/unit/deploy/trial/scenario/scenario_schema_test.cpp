@@ -48,6 +48,7 @@ std::vector<fs::path> shipped_scenarios() {
     for (const auto& entry : fs::directory_iterator(kScenarios + folder))
       if (entry.path().extension() == ".yaml") files.push_back(entry.path());
   }
+  files.emplace_back(SIDESTEP_SOURCE_DIR "/simulator/rendering/pictures/floor.yaml");
   std::ranges::sort(files);
   return files;
 }
