@@ -10,9 +10,10 @@
 
 namespace sidestep {
 
-/// What a terminal of this size shows after it has received some bytes. Knows what Sidestep sends: characters
-/// of one byte, line breaks, cursor up, erasing, colours. Like common terminals, it wraps a line only before
-/// the next character, and wraps the lines anew when it becomes narrower.
+/// What a terminal of this size shows after it has received some bytes. Knows what Sidestep sends:
+/// characters, of which those of several bytes are shown as "?", line breaks, cursor up, erasing, colours.
+/// Like common terminals, it wraps a line only before the next character, and wraps the lines anew when it
+/// becomes narrower.
 class Screen {
  public:
   Screen(int columns, int rows) : columns_(columns), rows_(rows) {}
@@ -25,8 +26,8 @@ class Screen {
         ++row_;
       else if (byte == '\r')
         column_ = 0;
-      else
-        put(byte);
+      else if (is_first(byte))
+        put(is_single(byte) ? byte : '?');
     }
   }
   void resize(int columns, int rows) {
@@ -71,6 +72,10 @@ class Screen {
   const std::string& unknown() const { return unknown_; }
 
  private:
+  /// Whether the byte is a character of UTF-8.
+  static bool is_single(char byte) { return (static_cast<unsigned char>(byte) & 0x80) == 0; }
+  /// Whether the byte begins a character of UTF-8.
+  static bool is_first(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
   std::string& line() {
     if (lines_.size() <= row_) lines_.resize(row_ + 1);
     return lines_[row_];

@@ -48,14 +48,15 @@ std::string round_trip_text(const ClockRow& row) {
 }  // namespace
 
 std::string to_table(const std::vector<ClockRow>& rows, const std::string& reference) {
-  constexpr const char* kLine = "{:<14} {:<16} {:>24} {:>13}  {:<12} {:>24}{}\n";
+  // The verdict, and what it rests on, stay in a terminal of 80 columns.
+  constexpr const char* kLine = "{:<14} {:<12} {:>24} {:>24} {:<16} {:>13}{}\n";
   std::string table = fmt::format("offsets from the clock of {}\n", reference);
-  table += fmt::format(kLine, "process", "host", "offset", "round trip ms", "clock bound",
-                       "robot - coordinator", "");
+  table += fmt::format(kLine, "process", "clock bound", "offset", "robot - coordinator", "host",
+                       "round trip ms", "");
   for (const ClockRow& row : rows) {
-    table += fmt::format(kLine, process_name(row.process), row.host.empty() ? "-" : row.host,
-                         offset_text(row.offset), round_trip_text(row), verdict_text(row.verdict),
-                         offset_text(row.robot), note(row));
+    table += fmt::format(kLine, process_name(row.process), verdict_text(row.verdict), offset_text(row.offset),
+                         offset_text(row.robot), row.host.empty() ? "-" : row.host, round_trip_text(row),
+                         note(row));
   }
   return table;
 }

@@ -4,6 +4,7 @@
 #include "common/protocol/senders.hpp"
 #include "deploy/run/clock/clock_text.hpp"
 #include "tests/catch.hpp"
+#include "tests/drawn_text.hpp"
 
 namespace sidestep::clock_survey_test {
 
@@ -116,12 +117,33 @@ TEST_CASE("the table names processes, offsets, verdicts, robots' clocks and host
   const std::string table = to_table(rows, "this machine");
   CAPTURE(table);
   CHECK_THAT(table, ContainsSubstring("offsets from the clock of this machine"));
-  CHECK_THAT(table, ContainsSubstring("agent 3        host"));
+  CHECK_THAT(table, ContainsSubstring("agent 3        beyond  "));
   CHECK_THAT(table, ContainsSubstring("+20.0 s"));
   CHECK_THAT(table, ContainsSubstring("beyond"));
   CHECK_THAT(table, ContainsSubstring("+0.100 ± 0.200 ms"));
   CHECK_THAT(table, ContainsSubstring("its host's clock has been set by +90.000 s since it started"));
   CHECK_THAT(table, ContainsSubstring("not measured"));
+}
+
+TEST_CASE(
+    "in a terminal of 60 columns the table of clocks shows the verdicts, and with 80 the robots' clocks") {
+  const int columns = GENERATE(60, 80, 120);
+  Scene scene;
+  scene.ask(3, 20s);
+  scene.survey.on_robot_clock(3, OffsetInterval{-100us, 300us}, scene.now);
+  scene.survey.on_heard(kCoordinator, scene.now);
+  const Screen screen = screen_of(to_table(scene.survey.rows(scene.now, {}), "this machine"), columns);
+  CAPTURE(columns);
+  INFO(screen.text());
+  const std::vector<std::string> lines = screen.lines();
+  REQUIRE(lines.size() == 4);
+  CHECK_THAT(lines[1], StartsWith("process        clock bound                    offset"));
+  CHECK_THAT(lines[2], StartsWith("agent 3        beyond                        +20.0 s"));
+  CHECK_THAT(lines[3], StartsWith("coordinator    not measured"));
+  CHECK((screen.count("+0.100 ? 0.200 ms") == 1) == (columns >= 80));
+  CHECK((screen.count("round trip ms") == 1) == (columns >= 120));
+  CHECK(screen.wraps() == 0);
+  CHECK(screen.unknown().empty());
 }
 
 }  // namespace sidestep::clock_survey_test

@@ -2,6 +2,7 @@
 #include "deploy/run/order/order_text.hpp"
 
 #include "tests/catch.hpp"
+#include "tests/drawn_text.hpp"
 
 namespace sidestep::order_text_test {
 
@@ -53,6 +54,29 @@ TEST_CASE("the table says what hinders a robot, and estimates no time for it") {
         "goes "
         "to 1.00,2.00 instead\n"
         "    3  driving   operator      1    1.5  \n");
+}
+
+TEST_CASE("in a terminal of 60 columns the table shows states and orders, and of the reasons what fits") {
+  const int columns = GENERATE(60, 80, 120);
+  std::map<RobotId, OrderReport> reports;
+  for (const RobotId robot : {0u, 1023u}) {
+    reports[robot] = {robot, client_id("kitchen"), 5, {msg::OrderState::ORDER_DRIVING, 0}};
+    reports[robot].client_name = client_name("kitchen");
+    reports[robot].remaining_s = 1.5;
+  }
+  const std::string why = "it has sent no report for 12 s; it is off the floor";
+  const Screen screen = screen_of(to_table(reports, {{1023, {{"silent", why}}}}), columns);
+  CAPTURE(columns);
+  INFO(screen.text());
+  const std::vector<std::string> lines = screen.lines();
+  REQUIRE(lines.size() == 3);
+  CHECK(lines[0] == "robot  state     ordered by     goal left s  why");
+  CHECK(lines[1] == "    0  driving   client kitchen    1    1.5");
+  CHECK_THAT(lines[2], StartsWith(" 1023  silent    client kitchen    1      -  it has sent"));
+  CHECK((screen.count(why) == 1) == (columns >= 120));
+  CHECK(screen.wraps() == 0);
+  CHECK(screen.unknown().empty());
+  CHECK(screen.colours() == 0);
 }
 
 TEST_CASE("the line of an order says what hinders its robot, until the order is over") {
