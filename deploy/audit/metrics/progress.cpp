@@ -73,9 +73,11 @@ std::vector<std::string> progress_parts(const RunMetrics& metrics, Time now) {
   const double missed = report.cycles > 0 ? 100.0 * static_cast<double>(report.missed_cycles) /
                                                 static_cast<double>(report.cycles)
                                           : 0;
-  std::vector<std::string> parts{since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting",
-                                 fmt::format("{} of {} arrived", report.arrived, report.robots),
-                                 fmt::format("{} contacts", report.contacts)};
+  std::vector<std::string> parts{
+      since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting",
+      fmt::format("{} of {} arrived", report.arrived, report.arrivals().with_goal())};
+  if (report.without_goal > 0) parts.push_back(fmt::format("{} without a goal", report.without_goal));
+  parts.push_back(fmt::format("{} contacts", report.contacts));
   if (metrics.conflicts() > 0) parts.push_back(fmt::format("{} in conflict", metrics.conflicts()));
   if (const std::string named = metrics.named_robots(); !named.empty()) parts.push_back(named);
   parts.push_back("clearance " +

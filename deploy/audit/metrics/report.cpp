@@ -147,15 +147,6 @@ std::string to_text(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.3f} {}", *value, unit) : "none";
 }
 
-/// How many robots have arrived, of those that have a goal.
-std::string arrived_text(const Report& report) {
-  const int with_goal = report.robots - report.without_goal;
-  if (report.without_goal == 0) return fmt::format("{} of {} robots arrived", report.arrived, report.robots);
-  if (with_goal == 0) return fmt::format("{} robots without a goal", report.robots);
-  return fmt::format("{} of {} robots arrived and {} had no goal", report.arrived, with_goal,
-                     report.without_goal);
-}
-
 /// Drops that only faulty, third-party or hostile processes cause, in one line; empty if there are none.
 std::string unusual_text(const Report& report) {
   std::string text;
@@ -210,8 +201,8 @@ std::string Report::failure_reason() const {
     add(fmt::format("{} audit violations, the first of rule {}", audit->violations,
                     rule_info_of(audit->first.front().rule).name));
   }
-  if (const int with_goal = robots - without_goal; must_arrive && arrived < with_goal)
-    add(fmt::format("{} of {} arrived", arrived, with_goal));
+  if (must_arrive && !arrivals().are_complete())
+    add(fmt::format("{} of {} arrived", arrived, arrivals().with_goal()));
   return reason;
 }
 
@@ -316,7 +307,7 @@ std::string summary(const Report& r) {
       "{} proposals, {} granted, {} denied; {:.2f} % of cycles missed; {} firmware violations\n"
       "negotiation p50 {:.0f} us, p99 {:.0f} us; planning p50 {:.0f} us, p99 {:.0f} us; safety search p50 "
       "{:.0f} us, p99 {:.0f} us\n",
-      arrived_text(r), r.contacts, kContactMeaning, to_text(r.min_clearance_m, "m"),
+      arrivals_text(r.arrivals()), r.contacts, kContactMeaning, to_text(r.min_clearance_m, "m"),
       to_text(r.makespan_s, "s"), to_text(r.mean_arrival_s, "s"),
       r.straight_line_time_ratio ? fmt::format("{:.2f}", *r.straight_line_time_ratio) : "?",
       r.route_changes_per_s ? fmt::format("{:.1f}", *r.route_changes_per_s) : "?", r.proposals, r.grants,

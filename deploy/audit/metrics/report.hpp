@@ -13,6 +13,7 @@
 #include "common/protocol/drop_reasons.hpp"
 #include "common/time/histogram.hpp"
 #include "deploy/audit/audit_totals.hpp"
+#include "deploy/audit/metrics/arrivals.hpp"
 #include "deploy/audit/metrics/floor_trace.hpp"
 #include "deploy/audit/metrics/process_use.hpp"
 
@@ -98,6 +99,7 @@ struct Report {
   std::string fast_dds;              ///< the launcher's version of Fast DDS; empty: not over DDS
   std::map<std::string, ProcessUse> processes;
 
+  Arrivals arrivals() const { return {robots, arrived, without_goal}; }
   /// Number of contacts, except those excused by a disturbance and those for which the audit does not know
   /// the robots.
   std::uint64_t unexcused_contacts() const;

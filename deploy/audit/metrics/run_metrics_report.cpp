@@ -108,8 +108,7 @@ void RunMetrics::add_arrivals(Report& report) const {
     }
   }
   if (report.arrived > 0 && granting_since_) report.mean_arrival_s = total_s / report.arrived;
-  if (report.arrived > 0 && report.arrived == report.robots - report.without_goal && granting_since_)
-    report.makespan_s = latest_s;
+  if (report.arrived > 0 && report.arrivals().are_complete() && granting_since_) report.makespan_s = latest_s;
   if (ratios > 0) report.straight_line_time_ratio = ratio_sum / ratios;
 }
 

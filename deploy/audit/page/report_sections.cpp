@@ -11,6 +11,7 @@
 #include "common/svg/palette.hpp"
 #include "common/svg/svg.hpp"
 #include "deploy/audit/metrics/report.hpp"
+#include "deploy/audit/metrics/reported_values.hpp"
 #include "deploy/audit/page/report_events.hpp"
 #include "deploy/audit/picture/run_timing.hpp"
 
@@ -123,11 +124,13 @@ std::string html_section(const std::string& heading, const std::string& content)
 }
 
 std::string figures_section(const Json& r) {
-  const Json &arrived = r.at("arrived"), &robots = r.at("robots");
+  const Arrivals arrivals = reported_arrivals(r);
   const auto cycles = number_at(r, "cycles"), missed = number_at(r, "missed_cycles");
   std::string figures =
-      figure("robots arrived", fmt::format("{} of {}", json_text(arrived), json_text(robots)),
-             arrived == robots ? "good" : "") +
+      figure("robots arrived", fmt::format("{} of {}", arrivals.arrived, arrivals.with_goal()),
+             arrivals.are_complete() ? "good" : "") +
+      (arrivals.without_goal > 0 ? figure("robots without a goal", fmt::format("{}", arrivals.without_goal))
+                                 : "") +
       contacts_figure(r) +
       figure("smallest clearance", with_unit(number_at(r, "min_clearance_m"), 1000, 1, "mm")) +
       figure("last arrival", with_unit(number_at(r, "makespan_s"), 1, 2, "s")) +
@@ -169,6 +172,8 @@ std::string speeds_section(const FloorTrace& trace) {
 }
 
 std::string arrivals_section(const Json& report) {
+  const auto late = report.find("not_arrived");
+  const bool has_goalless = reported_arrivals(report).without_goal > 0 && late != report.end();
   const Json& arrivals = report.at("arrival_s");
   std::vector<ChartBar> bars;
   std::vector<double> times;
@@ -176,8 +181,9 @@ std::string arrivals_section(const Json& report) {
   for (const auto& [robot, at] : arrivals.items()) {
     const std::string colour = distinct_colour(index++);
     if (at.is_number()) times.push_back(at.get<double>());
+    const char* const without_time = has_goalless && !late->contains(robot) ? "no goal" : "not arrived";
     bars.push_back({"robot " + robot, at.is_number() ? at.get<double>() : 0,
-                    at.is_number() ? fmt::format("{:.2f} s", at.get<double>()) : "not arrived", colour});
+                    at.is_number() ? fmt::format("{:.2f} s", at.get<double>()) : without_time, colour});
   }
   if (times.empty()) return {};
   std::string chart;

@@ -11,6 +11,7 @@
 #include "common/svg/palette.hpp"
 #include "common/svg/svg.hpp"
 #include "deploy/audit/metrics/floor_trace_json.hpp"
+#include "deploy/audit/metrics/reported_values.hpp"
 #include "deploy/audit/picture/opponent_drawing.hpp"
 #include "deploy/audit/picture/robot_drawing.hpp"
 #include "deploy/audit/picture/run_timing.hpp"
@@ -154,9 +155,8 @@ std::string run_outcome(const Json& report) {
     // The reason of a run that was not judged says so itself.
     return reason.starts_with("not judged") ? reason : "failed: " + reason;
   }
-  return fmt::format("passed: {} of {} robots arrived{}, {} contacts", json_text(report.at("arrived")),
-                     json_text(report.at("robots")),
-                     makespan.is_number() ? fmt::format(" in {:.2f} s", makespan.get<double>()) : "",
+  const std::string when = makespan.is_number() ? fmt::format(" in {:.2f} s", makespan.get<double>()) : "";
+  return fmt::format("passed: {}, {} contacts", arrivals_text(reported_arrivals(report), when),
                      json_text(report.at("contacts")));
 }
 

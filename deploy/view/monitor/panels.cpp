@@ -123,6 +123,7 @@ Json promise_json(const RunAssessment* assessment, bool is_heard, const std::opt
   promise["coverage"] = audit.coverage.share();
   promise["missed_messages"] = audit.missed;
   promise["arrived"] = report.arrived;
+  promise["with_goal"] = report.arrivals().with_goal();
   promise["cycles"] = report.cycles;
   promise["missed_cycles"] = report.missed_cycles;
   promise["run_s"] = audit.run_s;

@@ -7,6 +7,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/drop_codec.hpp"
 #include "common/messaging/histogram_codec.hpp"
+#include "deploy/audit/metrics/progress.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::run_metrics_test {
@@ -145,6 +146,8 @@ TEST_CASE("a robot without a goal has not arrived until it has carried out an or
   CHECK(metrics.arrived() == 1);
   CHECK(metrics.without_goal() == 1);
   CHECK(metrics.all_arrived());
+  CHECK_THAT(progress_line(metrics, time_from_ns(0)),
+             ContainsSubstring("1 of 1 arrived  1 without a goal  "));
   CHECK_FALSE(metrics.progress()[1].arrived);
   CHECK(metrics.progress()[1].is_done);
   const Report idle = metrics.report();

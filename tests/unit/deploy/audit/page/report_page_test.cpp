@@ -77,6 +77,40 @@ TEST_CASE("the page says in words and colour whether a run passed, failed, or wa
   CHECK_THAT(page_of(report), ContainsSubstring("<p class='verdict unknown'>? not judged: "));
 }
 
+/// Of three robots one has no goal, and all others have arrived.
+Report goalless_report() {
+  Report report = example_report();
+  report.contacts = 0;
+  report.audit.reset();
+  report.robots = 3;
+  report.arrived = 2;
+  report.without_goal = 1;
+  report.arrival_s = {{3, 1.25}, {5, 2.5}, {8, std::nullopt}};
+  report.not_arrived.clear();
+  return report;
+}
+
+TEST_CASE("robots without a goal are not counted among those that should arrive") {
+  const std::string page = page_of(goalless_report());
+  CHECK_THAT(page, ContainsSubstring("passed: 2 of 2 robots arrived and 1 had no goal") &&
+                       ContainsSubstring("<dt>robots arrived</dt><dd class='good'>2 of 2</dd>") &&
+                       ContainsSubstring("<dt>robots without a goal</dt><dd class=''>1</dd>"));
+  CHECK_THAT(page, ContainsSubstring(">no goal</text>") && !ContainsSubstring(">not arrived</text>"));
+  Report late = goalless_report();
+  late.robots = 4;
+  late.arrival_s[9] = std::nullopt;
+  late.not_arrived = {{9, "no path leads to its goal"}};
+  CHECK_THAT(page_of(late), ContainsSubstring(">no goal</text>") &&
+                                ContainsSubstring(">not arrived</text>") &&
+                                ContainsSubstring("<dd class=''>2 of 3</dd>"));
+}
+
+TEST_CASE("in reports of versions that do not count robots without a goal, every robot has one") {
+  auto old = json_of(example_report());
+  old.erase("without_goal");
+  CHECK_THAT(report_page(old), ContainsSubstring(">1 of 2</dd>") && ContainsSubstring(">not arrived</text>"));
+}
+
 TEST_CASE("the page of a report without paths says so, and shows the rest") {
   Report report = example_report();
   report.trace.reset();
@@ -113,6 +147,11 @@ TEST_CASE("what is not the report of a run is refused with the reason") {
   damaged = json_of(example_report());
   damaged["scenario"] = 7;
   CHECK_THROWS_WITH(report_text(damaged), StartsWith("is a damaged report: "));
+  for (const char* count : {"-1", "1e300", "\"two\"", "null"}) {
+    damaged = json_of(example_report());
+    damaged["robots"] = parse_ordered_json(count);
+    CHECK_THROWS_WITH(report_page(damaged), StartsWith("is a damaged report: "));
+  }
   damaged = json_of(example_report());
   damaged["paths"]["3"][0][0] = "soon";
   CHECK_THROWS_AS(report_page(damaged), std::invalid_argument);

@@ -81,6 +81,14 @@ TEST_CASE("the picture of a run says which run it shows, and how the run ended")
              ContainsSubstring(">hall &lt;1&gt;</text>") && ContainsSubstring(">failed: 3 contacts; "));
 }
 
+TEST_CASE("the picture of a run counts the robots without a goal apart from those that arrived") {
+  Report mixed = report();
+  mixed.robots = 5;
+  mixed.without_goal = 3;
+  CHECK_THAT(picture_of(mixed),
+             ContainsSubstring(">passed: 2 of 2 robots arrived in 1.00 s and 3 had no goal, "));
+}
+
 TEST_CASE("the picture of a run has starts, goals, directions, a scale and a legend") {
   const std::string svg = picture_of(report());
   CAPTURE(svg);

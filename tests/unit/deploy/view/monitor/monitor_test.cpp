@@ -139,6 +139,7 @@ TEST_CASE("after a run without violations the lamp shows a kept guarantee and th
   run.system.run_for(6s);
   CHECK(run.promise().at("state") == "kept");
   CHECK(run.promise().at("contacts") == 0);
+  CHECK(run.promise().at("with_goal") == run.scenario.robots.size());
   CHECK(run.promise().at("smallest").at("clearance_m") > 0);
   CHECK(run.promise().at("smallest").at("clearance_m") < 1);
   CHECK(run.promise().at("coverage") > 0.95);

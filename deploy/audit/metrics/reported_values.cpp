@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/audit/metrics/reported_values.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "common/motion/version.hpp"
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+int number_of_robots(const Json& json) {
+  const double number = json.get<double>();
+  if (!(number >= 0 && number <= kMaxRobots))
+    throw std::invalid_argument(fmt::format("is a damaged report: {:g} is not a number of robots", number));
+  return static_cast<int>(number);
+}
+
+}  // namespace
+
+Arrivals reported_arrivals(const Json& report) {
+  const auto without_goal = report.find("without_goal");
+  return {number_of_robots(report.at("robots")), number_of_robots(report.at("arrived")),
+          without_goal == report.end() ? 0 : number_of_robots(*without_goal)};
+}
+
+}  // namespace sidestep
