@@ -79,4 +79,20 @@ TEST_CASE("files that are no reports, and outputs that would overwrite the repor
   CHECK(report({}) == kExitUsage);
 }
 
+TEST_CASE("a report that nests very deeply, or has very many keys, is refused at once") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("hall-7.json"), text = to_json(example_report());
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  write_file(file, "{\"seed\": " + deep + "," + text.substr(1));
+  CHECK_THROWS_WITH(report({file}), file + ": is not JSON");
+  std::string keys = "{";
+  for (int i = 0; i < 300'000; ++i) keys += "\"" + std::to_string(i) + "\": 0, ";
+  write_file(file, keys + text.substr(1));
+  CHECK_THROWS_WITH(report({file}), file + ": is not JSON");
+  // Brackets and commas within a text do not count.
+  write_file(
+      file, "{\"note\": \"\\\"" + std::string(1000, '[') + std::string(20'000, ',') + "\"," + text.substr(1));
+  CHECK(report({file}) == 0);
+}
+
 }  // namespace sidestep::report_command_test
