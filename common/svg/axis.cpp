@@ -6,8 +6,16 @@
 #include <fmt/format.h>
 
 namespace sidestep {
+namespace {
+
+constexpr std::size_t kMaxTicks = 10'000;
+constexpr double kSmallestStep = 1e-300, kLargestStep = 1e307;
+
+}  // namespace
 
 double round_step(double min) {
+  // NaN becomes the smallest step.
+  min = std::min(std::max(kSmallestStep, min), kLargestStep);
   const double power = std::pow(10, std::floor(std::log10(min)));
   for (const double factor : {1.0, 2.0, 5.0})
     if (factor * power >= min * (1 - 1e-9)) return factor * power;
@@ -16,8 +24,14 @@ double round_step(double min) {
 
 std::vector<double> ticks(double from, double to, double step) {
   std::vector<double> values;
-  const double last = std::floor(to / step + 1e-6);
-  for (double k = std::ceil(from / step - 1e-6); k <= last; ++k) values.push_back(k * step);
+  const double first = std::ceil(from / step - 1e-6), last = std::floor(to / step + 1e-6);
+  if (!std::isfinite(first) || !std::isfinite(last)) return values;
+  for (std::size_t i = 0; i < kMaxTicks; ++i) {
+    const double k = first + static_cast<double>(i);
+    // Far from zero, multiples of a small step cannot be told apart.
+    if (k > last || (!values.empty() && k * step <= values.back())) break;
+    values.push_back(k * step);
+  }
   return values;
 }
 

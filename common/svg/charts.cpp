@@ -13,6 +13,9 @@ namespace sidestep {
 namespace {
 
 constexpr double kWidth_px = 900, kChartFont_px = 13;
+constexpr double kMinBarRoom_px = 100;
+constexpr double kMinValue = 1e-280, kMaxValue = 1e280;  // of the end of an axis
+constexpr double kMaxRatio = 1e12;                       // of the ends of a logarithmic axis
 constexpr double kRow_px = 26, kBar_px = 16, kMaxLabel_px = 260, kAxisBottom_px = 42;
 constexpr double kPlotHeight_px = 280, kPlotLeft_px = 56, kPlotTop_px = 14, kPlotRight_px = 16;
 constexpr const char* kTick = "font-size='12' fill-opacity='0.75'";
@@ -45,7 +48,7 @@ struct Scale {
 /// From 0 to at least `max`, with marks that are at least this share of the axis apart.
 Scale linear_scale(double max, double spacing_share) {
   Scale scale;
-  scale.to = max > 0 ? max : 1;
+  scale.to = max > 0 ? std::clamp(max, kMinValue, kMaxValue) : 1;
   scale.step = round_step(scale.to * spacing_share);
   scale.to = scale.step * std::ceil(scale.to / scale.step - 1e-9);
   scale.marks = ticks(0, scale.to, scale.step);
@@ -55,6 +58,8 @@ Scale linear_scale(double max, double spacing_share) {
 Scale logarithmic_scale(double min, double max) {
   Scale scale;
   scale.is_logarithmic = true;
+  max = std::clamp(max, kMinValue, kMaxValue);
+  min = std::clamp(min, max / kMaxRatio, max);
   scale.from = std::pow(10, std::floor(std::log10(min)));
   scale.to = std::max(10 * scale.from, std::pow(10, std::ceil(std::log10(max) - 1e-9)));
   for (double mark = scale.from; mark < 1.001 * scale.to; mark *= 10) scale.marks.push_back(mark);
@@ -79,7 +84,8 @@ std::string bar_chart(const std::vector<ChartBar>& bars, const BarAxis& axis) {
     label_px = std::max(label_px, text_width_px(bar.label, kChartFont_px));
     value_px = std::max(value_px, text_width_px(bar.value_text, kChartFont_px));
   }
-  const double left = std::min(label_px, kMaxLabel_px) + 14, length = kWidth_px - left - value_px - 20,
+  const double left = std::min(label_px, kMaxLabel_px) + 14,
+               length = std::max(kWidth_px - left - value_px - 20, kMinBarRoom_px),
                bottom = 4 + kRow_px * static_cast<double>(bars.size());
   const Scale scale = scale_of(bars, axis, length);
   std::string grid, svg;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 namespace sidestep {
@@ -11,7 +12,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMaxPlace_m = 1e5, kMaxTime_s = 1e9;  // limits of what is read
+// Limits of what is read.
+constexpr double kMaxPlace_m = 1e5, kMaxTime_s = 1e9;
+constexpr std::size_t kMaxOpponents = 1000;  // as of a scenario
 
 /// Rounds to millimetres, milliseconds and millimetres per second, which pictures do not show.
 Json number(double value) {
@@ -75,6 +78,12 @@ double read_positive(const Json& json) {
   return value;
 }
 
+RobotId read_robot(const Json& json) {
+  const double id = json.get<double>();
+  if (!(id >= 0 && id < kMaxRobots)) throw std::invalid_argument(fmt::format("{:g} is not a robot", id));
+  return static_cast<RobotId>(id);
+}
+
 Vec2 read_point(const Json& json, std::size_t first = 0) {
   return {read(json.at(first)), read(json.at(first + 1))};
 }
@@ -121,15 +130,20 @@ FloorTrace read_trace(const Json& report) {
   for (const Json& box : floor.at("walls")) trace.walls.push_back(read_box(box));
   const Json& paths = report.at("paths");
   if (!paths.is_object()) throw std::invalid_argument("paths: expected an object");
+  std::set<RobotId> ids;
   for (const Json& json : floor.at("robots")) {
     FloorTrace::Robot& robot = trace.robots.emplace_back();
-    robot.id = json.at("id").get<RobotId>();
+    robot.id = read_robot(json.at("id"));
+    if (!ids.insert(robot.id).second)
+      throw std::invalid_argument(fmt::format("there are two robots {}", robot.id));
     robot.team = json.at("team") == "yellow" ? Team::kYellow : Team::kBlue;
     robot.start_m = read_point(json.at("start_m"));
     robot.goals_m = read_points(json.at("goals_m"));
     if (const auto path = paths.find(std::to_string(robot.id)); path != paths.end())
       robot.path = read_path(*path);
   }
+  if (floor.at("opponents").size() > kMaxOpponents)
+    throw std::invalid_argument(fmt::format("there are more than {} opponents", kMaxOpponents));
   for (const Json& json : floor.at("opponents")) {
     OpponentSpec& opponent = trace.opponents.emplace_back();
     opponent = {read_positive(json.at("radius_m")), read(json.at("speed_mps")),
@@ -142,7 +156,7 @@ FloorTrace read_trace(const Json& report) {
     FloorTrace::Incident& incident = trace.incidents.emplace_back();
     incident.at_s = read(json.at("at_s"), kMaxTime_s);
     incident.kind = json.at("kind").get<std::string>();
-    incident.robots = json.at("robots").get<std::vector<RobotId>>();
+    for (const Json& robot : json.at("robots")) incident.robots.push_back(read_robot(robot));
     incident.position_m = read_point(json.at("at_m"));
   }
   return trace;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/audit/metrics/reported_values.hpp"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -12,6 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kMaxNumber = 1e15;
+
 int number_of_robots(const Json& json) {
   const double number = json.get<double>();
   if (!(number >= 0 && number <= kMaxRobots))
@@ -20,6 +23,15 @@ int number_of_robots(const Json& json) {
 }
 
 }  // namespace
+
+std::optional<double> reported_number(const Json& value) {
+  if (!value.is_number()) return std::nullopt;
+  const double number = value.get<double>();
+  if (!(std::abs(number) <= kMaxNumber))
+    throw std::invalid_argument(fmt::format("is a damaged report: {:g} is not between -{:g} and {:g}", number,
+                                            kMaxNumber, kMaxNumber));
+  return number;
+}
 
 Arrivals reported_arrivals(const Json& report) {
   const auto without_goal = report.find("without_goal");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 
 #include "deploy/audit/metrics/arrivals.hpp"
 
@@ -9,6 +10,9 @@ namespace sidestep {
 
 // Values of a report that was read from a file. They throw std::invalid_argument or nlohmann::json::exception
 // if the report is damaged.
+
+/// nullopt: the value is no number. A number that no run can have is damage.
+[[nodiscard]] std::optional<double> reported_number(const nlohmann::ordered_json& value);
 
 [[nodiscard]] Arrivals reported_arrivals(const nlohmann::ordered_json& report);
 

@@ -8,16 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "common/json/json_text.hpp"
+#include "deploy/audit/metrics/reported_values.hpp"
 #include "deploy/audit/picture/run_picture.hpp"
 
 namespace sidestep {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::optional<double> time_of(const Json& json) {
-  return json.is_number() ? std::optional(json.get<double>()) : std::nullopt;
-}
 
 /// The element with this key, or null if there is none.
 const Json& part(const Json& json, const char* key) {
@@ -29,13 +26,14 @@ const Json& part(const Json& json, const char* key) {
 /// Collects events of one report.
 class Collector {
  public:
-  explicit Collector(const Json& report) : report_(report), end_s_(time_of(part(report, "robot_time_s"))) {}
+  explicit Collector(const Json& report)
+      : report_(report), end_s_(reported_number(part(report, "robot_time_s"))) {}
 
   std::vector<ReportEvent> events() {
     if (part(report_, "grants") != 0) add(0.0, false, "a coordinator grants: robots may move");
     add_epochs();
     for (const auto& [robot, at] : part(report_, "arrival_s").items())
-      if (const auto at_s = time_of(at)) add(at_s, false, fmt::format("robot {} arrived", robot));
+      if (const auto at_s = reported_number(at)) add(at_s, false, fmt::format("robot {} arrived", robot));
     add_incidents();
     add_deaths();
     add_violations();
@@ -56,21 +54,22 @@ class Collector {
   }
   void add_epochs() {
     for (const Json& epoch : part(report_, "epochs"))
-      add(time_of(epoch.at("at_s")), false,
+      add(reported_number(epoch.at("at_s")), false,
           fmt::format("{} began epoch {}: {}", epoch.at("coordinator").get<std::string>(),
                       json_text(epoch.at("epoch")), epoch.at("reason").get<std::string>()));
   }
   void add_incidents() {
     for (const Json& incident : part(report_, "incidents")) {
-      const Json& robots = incident.at("robots");
-      add(time_of(incident.at("at_s")), true,
+      std::vector<std::string> robots;
+      for (const Json& robot : incident.at("robots")) robots.push_back(json_text(robot));
+      add(reported_number(incident.at("at_s")), true,
           fmt::format("{}: robot{} {}", incident.at("kind").get<std::string>(), robots.size() == 1 ? "" : "s",
-                      fmt::join(robots.get<std::vector<unsigned>>(), " and ")));
+                      fmt::join(robots, " and ")));
     }
   }
   void add_deaths() {
     for (const Json& death : part(report_, "deaths"))
-      add(time_of(death.at("at_s")), death.at("restarted") != true,
+      add(reported_number(death.at("at_s")), death.at("restarted") != true,
           fmt::format("{} died: {}{}", death.at("process").get<std::string>(),
                       death.at("reason").get<std::string>(),
                       death.at("restarted") == true ? "; it was started again" : ""));
@@ -79,7 +78,7 @@ class Collector {
     const Json& audit = part(report_, "audit");
     if (!audit.is_object()) return;
     for (const Json& violation : audit.at("first"))
-      add(time_of(part(violation, "at_s")), true,
+      add(reported_number(part(violation, "at_s")), true,
           fmt::format("the rule {} was broken: robot {} version {}: {}",
                       violation.at("rule").get<std::string>(), json_text(violation.at("robot")),
                       json_text(violation.at("version")), violation.at("detail").get<std::string>()));

@@ -30,7 +30,7 @@ constexpr const char* kNone = "none";
 
 std::optional<double> number_at(const Json& json, const char* key) {
   const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+  return found == json.end() ? std::nullopt : reported_number(*found);
 }
 
 std::string figure(const std::string& name, const std::string& value, const char* kind = "") {
@@ -180,10 +180,11 @@ std::string arrivals_section(const Json& report) {
   std::size_t index = 0;
   for (const auto& [robot, at] : arrivals.items()) {
     const std::string colour = distinct_colour(index++);
-    if (at.is_number()) times.push_back(at.get<double>());
+    const auto at_s = reported_number(at);
+    if (at_s) times.push_back(*at_s);
     const char* const without_time = has_goalless && !late->contains(robot) ? "no goal" : "not arrived";
-    bars.push_back({"robot " + robot, at.is_number() ? at.get<double>() : 0,
-                    at.is_number() ? fmt::format("{:.2f} s", at.get<double>()) : without_time, colour});
+    bars.push_back(
+        {"robot " + robot, at_s.value_or(0), at_s ? fmt::format("{:.2f} s", *at_s) : without_time, colour});
   }
   if (times.empty()) return {};
   std::string chart;

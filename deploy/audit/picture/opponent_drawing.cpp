@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/audit/picture/opponent_drawing.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -35,11 +36,16 @@ std::vector<FloorTrace::Point> opponent_path(const OpponentSpec& opponent, doubl
     return position_at(round, time_s - round_s * std::floor(time_s / round_s));
   };
   std::vector<FloorTrace::Point> path{{from_s, place(from_s), opponent.speed_mps}};
-  for (double begin_s = round_s * std::floor(from_s / round_s); begin_s < to_s && path.size() < kMaxCorners;
-       begin_s += round_s)
-    for (std::size_t i = 1; i < corners.size(); ++i)
-      if (const double time_s = begin_s + at_s[i]; time_s > from_s && time_s < to_s)
-        path.push_back({time_s, corners[i], opponent.speed_mps});
+  // Rounds are counted because adding a short round to a large time would not advance it.
+  const double first_round = std::floor(from_s / round_s);
+  const std::size_t turns = corners.size() - 1;
+  for (std::size_t i = 0; i < turns + kMaxCorners; ++i) {
+    const double round_number = first_round + static_cast<double>(i / turns);
+    const std::size_t corner = 1 + i % turns;
+    const double time_s = std::max(round_s * round_number + at_s[corner], path.back().at_s);
+    if (time_s >= to_s) break;
+    if (time_s > from_s) path.push_back({time_s, corners[corner], opponent.speed_mps});
+  }
   path.push_back({to_s, place(to_s), opponent.speed_mps});
   return path;
 }

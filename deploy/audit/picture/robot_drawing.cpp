@@ -15,7 +15,7 @@ constexpr double kLegible_px = 9, kSmallest_px = 3, kNumbered_px = 6.5;  // radi
 constexpr double kSpacingPerDisc = 5;  // of evenly spread robots, in radii of small discs
 constexpr std::size_t kFewRobots = 60;
 constexpr double kArrowSpacing_px = 45, kArrow_px = 6;
-constexpr double kMaxArrows = 2000;                     // of one robot
+constexpr double kMaxArrows = 1000;                     // of one robot
 constexpr double kStartRadii = 1.25, kGoalRadii = 1.7;  // of marks, in radii of a disc, which hides neither
 constexpr double kMoving_px = 3;  // a robot that moves less between two moments has no direction
 
@@ -28,8 +28,9 @@ std::vector<TimedPlace> places_of(const FloorTrace::Robot& robot, const FloorVie
   return places;
 }
 
-std::string arrows(const FloorTrace::Robot& robot, const RobotStyle& style, const FloorView& view) {
-  const double from_s = robot.path.front().at_s, to_s = robot.path.back().at_s,
+std::string arrows(const FloorTrace::Robot& robot, const RobotStyle& style, const FloorView& view,
+                   const RunTiming& timing) {
+  const double from_s = std::max(robot.path.front().at_s, timing.begin_s), to_s = robot.path.back().at_s,
                half_s = 0.1 * style.arrow_period_s;
   std::string data;
   for (const double at_s : ticks(from_s + half_s, to_s - half_s, style.arrow_period_s)) {
@@ -70,7 +71,7 @@ std::string path_of(const FloorTrace::Robot& robot, const std::string& colour, c
   } else {
     lines = line + " stroke-opacity='0.85'/>\n";
   }
-  const std::string heads = arrows(robot, style, view);
+  const std::string heads = arrows(robot, style, view, timing);
   return fmt::format(
              "<g fill='none' stroke='{0}' stroke-linejoin='round'><title>path of robot {1}</title>\n{2}",
              colour, robot.id, lines) +
@@ -157,9 +158,9 @@ RobotStyle robot_style(const FloorTrace& trace, const FloorView& view, const Run
       moving_s += robot.path[i].at_s - robot.path[i - 1].at_s;
     }
   }
-  if (driven_px > 0 && moving_s > 0)
-    style.arrow_period_s = round_step(
-        std::max(kArrowSpacing_px * moving_s / driven_px, (timing.end_s - timing.begin_s) / kMaxArrows));
+  if (driven_px > 0 && moving_s > 0) style.arrow_period_s = kArrowSpacing_px * moving_s / driven_px;
+  style.arrow_period_s =
+      round_step(std::max(style.arrow_period_s, (timing.end_s - timing.begin_s) / kMaxArrows));
   return style;
 }
 

@@ -149,13 +149,14 @@ std::string run_title(const Json& report) {
 }
 
 std::string run_outcome(const Json& report) {
-  const Json &failure = report.at("failure"), &makespan = report.at("makespan_s");
+  const Json& failure = report.at("failure");
   if (report.at("passed") != true) {
     const std::string reason = failure.is_string() ? failure.get<std::string>() : "";
     // The reason of a run that was not judged says so itself.
     return reason.starts_with("not judged") ? reason : "failed: " + reason;
   }
-  const std::string when = makespan.is_number() ? fmt::format(" in {:.2f} s", makespan.get<double>()) : "";
+  const auto makespan_s = reported_number(report.at("makespan_s"));
+  const std::string when = makespan_s ? fmt::format(" in {:.2f} s", *makespan_s) : "";
   return fmt::format("passed: {}, {} contacts", arrivals_text(reported_arrivals(report), when),
                      json_text(report.at("contacts")));
 }

@@ -56,6 +56,22 @@ TEST_CASE("charts of nothing, and of values that are all zero, have no invalid n
   CHECK(line_chart({{"a", "#111111", {{1, 2}}}}, {"x", "y"}).empty());
 }
 
+TEST_CASE("charts of values that no run has are small and have no invalid numbers") {
+  for (const double value : {5e-324, 1e-300, 1e300, 1.7e308}) {
+    CAPTURE(value);
+    for (const bool is_logarithmic : {false, true}) {
+      const std::string long_text(400, '7');
+      const std::string svg =
+          bar_chart({{"a", value, long_text, "#111111"}, {"b", 1, "1", "#111111"}}, {"time", is_logarithmic});
+      CHECK(svg.size() < 50'000);
+      CHECK_THAT(svg,
+                 !ContainsSubstring("nan") && !ContainsSubstring("inf") && !ContainsSubstring("width='-"));
+      CHECK(bar_chart({{"a", value, "", "#111111"}}, {"time", is_logarithmic}).size() < 50'000);
+    }
+    CHECK(line_chart({{"a", "#111111", {{0, value}, {value, 0}}}}, {"x", "y"}).size() < 50'000);
+  }
+}
+
 TEST_CASE("a line chart has a line for each series, marks on both axes, and the limit") {
   LineAxes axes{"time [s]", "speed [m/s]"};
   axes.marked_y = 2;

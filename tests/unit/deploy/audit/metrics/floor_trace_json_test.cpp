@@ -75,13 +75,21 @@ TEST_CASE("a damaged trace is refused with the reason") {
   refused("/floor/obstacles", "[{\"blob\": 1}]");
   refused("/floor/walls", "[[1, 2, 3]]");
   refused("/floor/robots/0/id", "\"three\"");
+  refused("/floor/robots/0/id", "1e300");
+  refused("/floor/robots/0/id", "-1");
+  refused("/floor/robots/0/id", "9");  // the id of the other one
   refused("/floor/robots/0/start_m", "[1]");
   refused("/floor/opponents/0/path_m", "[]");
   refused("/paths/3", "[[0, 0, 0]]");
   refused("/paths/3", "[[1, 0, 0, 0], [0, 0, 0, 0]]");
   refused("/paths", "null");
   refused("/incidents", "7");
+  refused("/incidents/0/robots", "[1e300]");
   Json report = written();
+  const Json opponent = report["floor"]["opponents"][0];
+  for (int i = 0; i < 1000; ++i) report["floor"]["opponents"].push_back(opponent);
+  CHECK_THROWS_WITH(floor_trace_of(report), EndsWith("there are more than 1000 opponents"));
+  report = written();
   report.erase("incidents");
   CHECK_THROWS_AS(floor_trace_of(report), std::invalid_argument);
   report = written();

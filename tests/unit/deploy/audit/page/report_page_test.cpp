@@ -152,6 +152,12 @@ TEST_CASE("what is not the report of a run is refused with the reason") {
     damaged["robots"] = parse_ordered_json(count);
     CHECK_THROWS_WITH(report_page(damaged), StartsWith("is a damaged report: "));
   }
+  for (const char* place : {"/arrival_s/3", "/min_clearance_m", "/negotiation_us/max", "/deaths/0/at_s"}) {
+    CAPTURE(place);
+    damaged = json_of(example_report());
+    damaged[nlohmann::ordered_json::json_pointer(place)] = -1e300;
+    CHECK_THROWS_WITH(report_page(damaged), StartsWith("is a damaged report: -1e+300 is not between"));
+  }
   damaged = json_of(example_report());
   damaged["paths"]["3"][0][0] = "soon";
   CHECK_THROWS_AS(report_page(damaged), std::invalid_argument);

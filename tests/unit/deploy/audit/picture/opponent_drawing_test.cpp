@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/audit/picture/opponent_drawing.hpp"
 
+#include <algorithm>
+
 #include "tests/catch.hpp"
 
 namespace sidestep::opponent_drawing_test {
@@ -34,6 +36,18 @@ TEST_CASE("an opponent with one place or without speed stays") {
 
 TEST_CASE("a path of an opponent that turns very often has a limited number of points") {
   CHECK(opponent_path({0.2, 1, {{0, 0}, {1e-6, 0}}}, 0, 1e5).size() < 2010);
+}
+
+TEST_CASE("a fast opponent long after its begin has a path in the order of time") {
+  // Its rounds are shorter than the distance of two numbers that are this large.
+  const auto path = opponent_path({0.2, 1e5, {{0, 0}, {0.001, 0}}}, 5e8, 5e8 + 10);
+  CHECK(path.size() < 2010);
+  CHECK(std::ranges::is_sorted(path, {}, &FloorTrace::Point::at_s));
+  CHECK(path.front().at_s == 5e8);
+  CHECK(path.back().at_s == 5e8 + 10);
+  std::vector<Vec2> corners;
+  for (int i = 0; i < 5000; ++i) corners.emplace_back(1e-7 * i, 0);
+  CHECK(opponent_path({0.2, 1e5, corners}, -1e9, 1e9).size() < 2010 + 2 * corners.size());
 }
 
 }  // namespace sidestep::opponent_drawing_test

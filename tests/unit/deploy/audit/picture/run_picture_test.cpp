@@ -192,6 +192,25 @@ TEST_CASE("a robot that was carried far in a moment of a long run does not fill 
   CHECK_THAT(svg, ContainsSubstring("<title>path of robot 0</title>") && !ContainsSubstring("nan"));
 }
 
+TEST_CASE("a robot that rests for years, or was seen years before the first grant, has few arrows") {
+  Report old = report();
+  old.trace->robots[0].path.insert(old.trace->robots[0].path.begin(), {-1e9, {-1, 0}, 0});
+  CHECK(picture_of(old).size() < 20'000);
+  Report resting = report();
+  for (FloorTrace::Robot& robot : resting.trace->robots) {
+    robot.path.clear();
+    for (int i = 0; i <= 20; ++i)  // creeps by less than a pixel from one point to the next
+      robot.path.push_back({-1e9 + 1e8 * i, robot.start_m + Vec2(0.001 * i, 0), 0});
+  }
+  CHECK(picture_of(resting).size() < 20'000);
+  Report brief = report();
+  for (FloorTrace::Robot& robot : brief.trace->robots)
+    robot.path = {{0, robot.start_m, 0}, {1e9, Vec2(1, 0), 0}};
+  auto json = parse_ordered_json(to_json(brief));
+  for (const char* robot : {"0", "1"}) json["paths"][robot][0][0] = 1e9 - 2e-7;
+  CHECK(run_picture(json).size() < 100'000);
+}
+
 TEST_CASE("a report without paths gives a picture that says so") {
   Report without = report();
   without.trace.reset();
