@@ -6,6 +6,9 @@
 
 namespace sidestep {
 
+/// U+FFFD, which stands for what cannot be shown.
+inline constexpr std::string_view kReplacementCharacter = "\xEF\xBF\xBD";
+
 /// Length in bytes of the UTF-8 sequence (RFC 3629) that begins at `at`, which must be below the text's size.
 /// 0 if no valid sequence begins there, or if it encodes a control character other than tab, newline and
 /// carriage return, or a non-character that XML 1.0 excludes.

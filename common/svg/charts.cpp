@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "common/file/xml_text.hpp"
 #include "common/svg/axis.hpp"
 #include "common/svg/svg.hpp"
 

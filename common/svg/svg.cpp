@@ -3,33 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "common/file/utf8.hpp"
+#include "common/file/xml_text.hpp"
 
 namespace sidestep {
-
-std::string xml_escaped(std::string_view text) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = utf8_length(text, at);
-    const char c = text[at];
-    if (length == 0)
-      result += "\xEF\xBF\xBD";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '&')
-      result += "&amp;";
-    else if (c == '"')
-      result += "&quot;";
-    else if (c == '\'')
-      result += "&#39;";
-    else
-      result += text.substr(at, length);
-    at += length == 0 ? 1 : length;
-  }
-  return result;
-}
 
 std::string svg_points(std::span<const Vec2> points_px) {
   std::string text;

@@ -11,9 +11,6 @@ namespace sidestep {
 
 // Parts of SVG pictures, in pixels. SVG's y axis points down.
 
-/// The text for the content and the attributes of XML and HTML. Bytes that XML does not allow become U+FFFD.
-[[nodiscard]] std::string xml_escaped(std::string_view text);
-
 /// The points of a polyline or polygon, as "x,y x,y ".
 [[nodiscard]] std::string svg_points(std::span<const Vec2> points_px);
 /// The data of a path through the points, as "Mx yLx y"; empty if there are none.

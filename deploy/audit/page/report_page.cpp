@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "common/svg/svg.hpp"
+#include "common/file/xml_text.hpp"
 #include "deploy/audit/metrics/floor_trace_json.hpp"
 #include "deploy/audit/page/page_parts.hpp"
 #include "deploy/audit/page/report_events.hpp"

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/file/xml_text.hpp"
 #include "common/json/json_text.hpp"
 #include "common/svg/charts.hpp"
 #include "common/svg/palette.hpp"
-#include "common/svg/svg.hpp"
 #include "deploy/audit/metrics/report.hpp"
 #include "deploy/audit/metrics/reported_values.hpp"
 #include "deploy/audit/page/report_events.hpp"

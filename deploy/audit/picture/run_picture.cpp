@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "common/file/xml_text.hpp"
 #include "common/json/json_text.hpp"
 #include "common/svg/axis.hpp"
 #include "common/svg/floor_sheet.hpp"

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "common/file/xml_text.hpp"
 #include "common/svg/palette.hpp"
 #include "common/svg/svg.hpp"
 #include "deploy/inspect/topic/process_groups.hpp"

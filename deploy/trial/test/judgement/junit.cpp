@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "common/file/utf8.hpp"
+#include "common/file/xml_text.hpp"
 
 namespace sidestep {
 namespace {
@@ -24,28 +24,6 @@ std::string test_case(const TestResult& result) {
 }
 
 }  // namespace
-
-std::string xml_escaped(const std::string& text) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = utf8_length(text, at);
-    const std::string character = length == 0 ? "?" : text.substr(at, length);
-    at += std::max<std::size_t>(length, 1);
-    if (character == "&")
-      result += "&amp;";
-    else if (character == "<")
-      result += "&lt;";
-    else if (character == ">")
-      result += "&gt;";
-    else if (character == "\"")
-      result += "&quot;";
-    else if (character == "\n" || character == "\r" || character == "\t")
-      result += fmt::format("&#{};", static_cast<int>(character[0]));
-    else
-      result += character;
-  }
-  return result;
-}
 
 std::string junit_xml(const std::vector<TestResult>& results) {
   const auto has_error = [](const TestResult& result) { return !result.error.empty(); };

@@ -12,7 +12,4 @@ namespace sidestep {
 /// failed.
 [[nodiscard]] std::string junit_xml(const std::vector<TestResult>& results);
 
-/// Escapes a text for an XML 1.0 attribute or element. Characters that XML cannot contain become '?'.
-[[nodiscard]] std::string xml_escaped(const std::string& text);
-
 }  // namespace sidestep

@@ -42,15 +42,11 @@ TEST_CASE("each result becomes one test case, with counts and times") {
         "</testsuite>\n");
 }
 
-TEST_CASE("text is escaped, and characters that XML cannot contain are replaced") {
-  CHECK(xml_escaped("a<b>&\"c'") == "a&lt;b&gt;&amp;&quot;c'");
-  CHECK(xml_escaped("line\nnext\ttab") == "line&#10;next&#9;tab");
-  CHECK(xml_escaped(std::string("\0\x1b[K\x7f", 5)) == "??[K\x7f");
-  CHECK(xml_escaped("gr\xc3\xbc\xc3\x9f, \xe2\x82\xac, \xf0\x9f\xa4\x96") ==
-        "gr\xc3\xbc\xc3\x9f, \xe2\x82\xac, \xf0\x9f\xa4\x96");
-  CHECK(xml_escaped("\xff \xc3 \xe2\x82 \xc0\x80") == "? ? ?? ??");  // invalid UTF-8
-  CHECK(xml_escaped("\xed\xa0\x80 \xef\xbf\xbf") == "??? ???");      // surrogate, non-character
-  CHECK(xml_escaped("\xf4\x90\x80\x80") == "????");                  // beyond Unicode
+TEST_CASE("texts of a test cannot leave their place in its results") {
+  TestResult broken = passed_result();
+  broken.error = "it's\x1b[31m <\"bad\">\n";
+  CHECK_THAT(junit_xml({broken}),
+             ContainsSubstring("it&#39;s\xEF\xBF\xBD[31m &lt;&quot;bad&quot;&gt;&#10;</error>"));
 }
 
 }  // namespace sidestep::junit_test
