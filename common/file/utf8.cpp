@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/file/utf8.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace sidestep {
@@ -33,6 +34,17 @@ std::size_t printable_length(std::string_view text, std::size_t at) {
   const bool is_control =
       length == 2 && first == kC1Lead && second >= kFirstC1Control && second <= kLastC1Control;
   return is_control ? 0 : length;
+}
+
+std::string printable_line(std::string_view text) {
+  std::string line;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = text[at] == ' ' ? 1 : printable_length(text, at);
+    line += length > 0 ? text.substr(at, length) : kReplacementCharacter;
+    // A control character of several bytes is one character.
+    at += std::max({length, utf8_length(text, at), std::size_t{1}});
+  }
+  return line;
 }
 
 }  // namespace sidestep

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace sidestep {
@@ -17,5 +18,9 @@ inline constexpr std::string_view kReplacementCharacter = "\xEF\xBF\xBD";
 /// Length in bytes of a character that can be part of a name: as utf8_length(), but 0 for ASCII white space
 /// and for any control character.
 [[nodiscard]] std::size_t printable_length(std::string_view text, std::size_t at);
+
+/// A text of unknown origin as one line for a terminal: U+FFFD replaces control characters, line ends and
+/// tabs among them, and bytes that are not UTF-8.
+[[nodiscard]] std::string printable_line(std::string_view text);
 
 }  // namespace sidestep

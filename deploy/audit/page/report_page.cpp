@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "common/file/utf8.hpp"
 #include "common/file/xml_text.hpp"
 #include "deploy/audit/metrics/floor_trace_json.hpp"
 #include "deploy/audit/page/page_parts.hpp"
@@ -90,9 +91,10 @@ std::string report_page(const Json& report) {
 
 std::string report_text(const Json& report) {
   return checked(report, [&] {
-    std::string text = fmt::format("{}: {}\n", run_title(report), run_outcome(report));
+    std::string text = printable_line(fmt::format("{}: {}", run_title(report), run_outcome(report))) + "\n";
     for (const ReportEvent& event : events_of(report))
-      text += fmt::format("{:>10}  {}\n", event.at_s ? fmt::format("{:.2f} s", *event.at_s) : "", event.text);
+      text += fmt::format("{:>10}  {}\n", event.at_s ? fmt::format("{:.2f} s", *event.at_s) : "",
+                          printable_line(event.text));
     return text;
   });
 }

@@ -29,4 +29,14 @@ TEST_CASE("the length of a UTF-8 sequence is zero if the sequence is invalid or 
   CHECK(utf8_length("ab" + text, 2) == length);
 }
 
+TEST_CASE("a text of unknown origin cannot control a terminal") {
+  CHECK(printable_line("robot 3: gr\xc3\xbc\xc3\x9f, \xe4\xba\xa4") ==
+        "robot 3: gr\xc3\xbc\xc3\x9f, \xe4\xba\xa4");
+  const std::string kInvalid(kReplacementCharacter);
+  CHECK(printable_line("a\x1b[2Jb\nc\r\t\x7f") ==
+        "a" + kInvalid + "[2Jb" + kInvalid + "c" + kInvalid + kInvalid + kInvalid);
+  CHECK(printable_line("\xc2\x9b"
+                       "2J\xff") == kInvalid + "2J" + kInvalid);
+}
+
 }  // namespace sidestep::utf8_test

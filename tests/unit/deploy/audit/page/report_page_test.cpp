@@ -169,4 +169,16 @@ TEST_CASE("as text, a report is its verdict and its events") {
   CHECK_THAT(text, ContainsSubstring("\n    1.25 s  robot 3 arrived\n"));
 }
 
+TEST_CASE("texts of a report cannot control the terminal that shows them") {
+  Report report = example_report();
+  report.scenario = "a\x1b[2J";
+  report.abort_reason = "b\r\x07";
+  report.not_arrived[8] = "c\x1b]0;title\x07";
+  report.deaths[0].reason = "d\n    1.00 s  robot 8 arrived";
+  const std::string text = report_text(json_of(report));
+  CHECK(text.find_first_of("\x1b\x07\r\t") == std::string::npos);
+  CHECK_THAT(text, ContainsSubstring("c\xEF\xBF\xBD]0;title") &&
+                       !ContainsSubstring("\n    1.00 s  robot 8 arrived"));
+}
+
 }  // namespace sidestep::report_page_test
