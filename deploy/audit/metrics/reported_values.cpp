@@ -22,6 +22,13 @@ int number_of_robots(const Json& json) {
   return static_cast<int>(number);
 }
 
+/// A count of the audit; 0 if the run was not audited, or by a version that did not count this.
+double audit_count(const Json& report, const char* key) {
+  const Json& audit = report.at("audit");
+  const auto found = audit.find(key);
+  return found == audit.end() ? 0 : reported_number(*found).value_or(0);
+}
+
 }  // namespace
 
 std::optional<double> reported_number(const Json& value) {
@@ -37,6 +44,15 @@ Arrivals reported_arrivals(const Json& report) {
   const auto without_goal = report.find("without_goal");
   return {number_of_robots(report.at("robots")), number_of_robots(report.at("arrived")),
           without_goal == report.end() ? 0 : number_of_robots(*without_goal)};
+}
+
+ExcludedCounts excluded_contacts(const Json& report) {
+  return {audit_count(report, "excused_contacts"),
+          audit_count(report, "unidentified_contacts") + audit_count(report, "undecided_contacts")};
+}
+
+ExcludedCounts excluded_crashes(const Json& report) {
+  return {audit_count(report, "excused_crashes"), audit_count(report, "undecided_crashes")};
 }
 
 }  // namespace sidestep

@@ -16,4 +16,13 @@ namespace sidestep {
 
 [[nodiscard]] Arrivals reported_arrivals(const nlohmann::ordered_json& report);
 
+/// Contacts or crashes that the verdict does not count.
+struct ExcludedCounts {
+  double excused = 0;    ///< by disturbances
+  double undecided = 0;  ///< the audit does not know the robots, or whether a disturbance excuses them
+};
+/// What Report::unexcused_contacts() and Report::unexcused_crashes() exclude.
+[[nodiscard]] ExcludedCounts excluded_contacts(const nlohmann::ordered_json& report);
+[[nodiscard]] ExcludedCounts excluded_crashes(const nlohmann::ordered_json& report);
+
 }  // namespace sidestep

@@ -47,13 +47,28 @@ std::string alarming(const std::string& name, const Json& count) {
   return figure(name, json_text(count), count == 0 ? "good" : "bad");
 }
 
-/// Contacts, which are no alarm if disturbances excuse all of them.
+/// Contacts or crashes. The verdict counts neither those that disturbances excuse nor those that the audit
+/// cannot judge.
+std::string judged_figure(const std::string& name, double count, const ExcludedCounts& excluded) {
+  std::string text = fmt::format("{:.0f}", count);
+  if (excluded.excused > 0) text += fmt::format(", {:.0f} excused", excluded.excused);
+  if (excluded.undecided > 0) text += fmt::format(", {:.0f} not judged", excluded.undecided);
+  const char* const kind = count > excluded.excused + excluded.undecided ? "bad"
+                           : excluded.undecided > 0                      ? "unknown"
+                                                                         : "good";
+  return figure(name, text, kind);
+}
+
 std::string contacts_figure(const Json& report) {
-  const Json& audit = report.at("audit");
-  const double contacts = report.at("contacts").get<double>(),
-               excused = audit.is_object() ? number_at(audit, "excused_contacts").value_or(0) : 0;
-  const std::string note = excused > 0 ? fmt::format(", {:g} excused", excused) : "";
-  return figure("contacts", fmt::format("{:g}{}", contacts, note), contacts > excused ? "bad" : "good");
+  return judged_figure("contacts", reported_number(report.at("contacts")).value_or(0),
+                       excluded_contacts(report));
+}
+
+/// Empty if there was no crash.
+std::string crashes_figure(const Json& report) {
+  if (report.at("crashes") == 0) return {};
+  return judged_figure("crashes while moving", reported_number(report.at("crashes_while_moving")).value_or(0),
+                       excluded_crashes(report));
 }
 
 std::string audit_figures(const Json& audit) {
@@ -138,7 +153,7 @@ std::string figures_section(const Json& r) {
   if (const auto ratio = number_at(r, "straight_line_time_ratio"))
     figures += figure("time over a straight line", fmt::format("{:.2f} times", *ratio));
   figures += audit_figures(r.at("audit"));
-  if (r.at("crashes") != 0) figures += alarming("crashes while moving", r.at("crashes_while_moving"));
+  figures += crashes_figure(r);
   figures += figure("proposals granted",
                     fmt::format("{} of {}", json_text(r.at("grants")), json_text(r.at("proposals"))));
   if (cycles && missed && *cycles > 0)

@@ -111,6 +111,27 @@ TEST_CASE("in reports of versions that do not count robots without a goal, every
   CHECK_THAT(report_page(old), ContainsSubstring(">1 of 2</dd>") && ContainsSubstring(">not arrived</text>"));
 }
 
+TEST_CASE("contacts and crashes that the verdict does not count are not red") {
+  Report report = example_report();
+  report.audit = AuditTotals{};
+  report.contacts = 6;
+  report.audit->excused_contacts = 3;
+  report.audit->unidentified_contacts = 2;
+  report.audit->undecided_contacts = 1;
+  report.crashes = report.crashes_while_moving = 2;
+  report.audit->excused_crashes = 2;
+  REQUIRE(report.unexcused_contacts() == 0);
+  REQUIRE(report.unexcused_crashes() == 0);
+  std::string page = page_of(report);
+  CHECK_THAT(page, ContainsSubstring("<dt>contacts</dt><dd class='unknown'>6, 3 excused, 3 not judged</dd>"));
+  CHECK_THAT(page, ContainsSubstring("<dt>crashes while moving</dt><dd class='good'>2, 2 excused</dd>"));
+  ++report.contacts;
+  ++report.crashes_while_moving;
+  page = page_of(report);
+  CHECK_THAT(page, ContainsSubstring("<dt>contacts</dt><dd class='bad'>7, 3 excused, 3 not judged</dd>"));
+  CHECK_THAT(page, ContainsSubstring("<dt>crashes while moving</dt><dd class='bad'>3, 2 excused</dd>"));
+}
+
 TEST_CASE("the page of a report without paths says so, and shows the rest") {
   Report report = example_report();
   report.trace.reset();
