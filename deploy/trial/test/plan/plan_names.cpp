@@ -28,6 +28,11 @@ std::string process_from_node(const YAML::Node& node, const YamlLocation& locati
   return name;
 }
 
+/// A valid value for a map that is made from a schema and has no content; empty if there is no name.
+std::string first_of(const std::vector<std::string>& names) {
+  return names.empty() ? std::string() : names.front();
+}
+
 }  // namespace
 
 std::string only_key_of(YamlMap& map, const std::vector<std::string>& keys, const char* what) {
@@ -87,7 +92,7 @@ std::optional<std::string> find_process(YamlMap& map, const std::string& key,
 
 std::string process_from(YamlMap& map, const std::string& key, const std::vector<std::string>& names) {
   (void)map.require(key);
-  return find_process(map, key, names).value_or(names.front());
+  return find_process(map, key, names).value_or(first_of(names));
 }
 
 std::optional<std::vector<std::string>> find_processes(YamlMap& map, const std::string& key,
@@ -110,7 +115,7 @@ std::optional<std::vector<std::string>> find_processes(YamlMap& map, const std::
 std::vector<std::string> processes_from(YamlMap& map, const std::string& key,
                                         const std::vector<std::string>& names) {
   (void)map.require(key);
-  return find_processes(map, key, names).value_or(std::vector{names.front()});
+  return find_processes(map, key, names).value_or(std::vector{first_of(names)});
 }
 
 double moment_from(YamlMap& map, const std::string& key, const Scenario& scenario) {
