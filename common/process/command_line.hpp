@@ -60,7 +60,7 @@ class CliCommand {
   /// Adds --version, which prints this text.
   void add_version(const std::string& text) const;
   /// An option if the name begins with dashes, else a positional argument. `Value` is one of the types for
-  /// which command_line.cpp instantiates this template. NaN and infinity are refused.
+  /// which cli_command.cpp instantiates this template. NaN and infinity are refused.
   template <typename Value>
   Option add_option(const std::string& name, Value& value, const std::string& description = {}) const;
   Option add_flag(const std::string& name, bool& value, const std::string& description = {}) const;
