@@ -89,7 +89,12 @@ void require_replaceable(const std::string& path) {
 
 void require_openable(const std::string& path) {
   require_write_permission(path);
-  if (type_of(path) == std::filesystem::file_type::not_found) require_room_beside(path);
+  const auto type = type_of(path);
+  std::error_code none;
+  // To empty a file makes room, unless it is empty.
+  const bool is_empty =
+      type == std::filesystem::file_type::regular && std::filesystem::file_size(path, none) == 0;
+  if (is_empty || type == std::filesystem::file_type::not_found) require_room_beside(path);
 }
 
 }  // namespace sidestep

@@ -25,7 +25,7 @@ using CertifiedPrefix = std::array<std::uint8_t, 6>;
 inline constexpr const char* kOrganisation = "Sidestep";
 
 /// The period in which a certificate or document is valid.
-struct Validity {
+struct ValidityPeriod {
   Time from, until;
 };
 
@@ -51,7 +51,7 @@ class Certificate {
   std::string serial() const;  ///< The serial number, in hexadecimal.
   Time not_before() const;
   Time not_after() const;
-  Validity validity() const { return {not_before(), not_after()}; }
+  ValidityPeriod validity() const { return {not_before(), not_after()}; }
   CertifiedPrefix prefix() const;
   /// The GUID prefix of a participant with this certificate. `candidate` is the prefix that the participant
   /// would have without a certificate.
@@ -66,7 +66,7 @@ class Certificate {
 /// The certificates that an authority has revoked (a CRL, RFC 5280).
 struct RevocationList {
   std::set<std::string> serials;
-  Validity validity;
+  ValidityPeriod validity;
 };
 
 /// Reads a list of revoked certificates from a PEM file. Throws std::invalid_argument that names the file and

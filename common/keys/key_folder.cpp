@@ -41,7 +41,7 @@ void require_own_private_key(const std::string& file, const Certificate& certifi
 
 /// The clock may not have been set yet, so a key that is not valid yet is not a usage error: if the process
 /// is restarted, it tries again.
-void require_valid(const std::string& what, const Validity& validity, Time now,
+void require_valid(const std::string& what, const ValidityPeriod& validity, Time now,
                    const char* remedy = "make new keys in another folder") {
   if (now > validity.until)
     throw std::invalid_argument(fmt::format("{} expired on {}; {}", what, date_text(validity.until), remedy));

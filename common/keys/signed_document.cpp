@@ -64,7 +64,8 @@ std::string load_signed_document(const std::string& path, const Certificate& aut
   return {data, static_cast<std::size_t>(size)};
 }
 
-std::optional<Validity> permissions_validity(const std::string& permissions, const std::string& subject) {
+std::optional<ValidityPeriod> permissions_validity(const std::string& permissions,
+                                                   const std::string& subject) {
   const auto grant = permissions.find("<subject_name>" + subject + "</subject_name>");
   if (grant == std::string::npos) return std::nullopt;
   const auto from = element(permissions, "not_before", grant),
@@ -72,7 +73,7 @@ std::optional<Validity> permissions_validity(const std::string& permissions, con
   const auto from_time = from ? parse_time(*from) : std::nullopt;
   const auto until_time = until ? parse_time(*until) : std::nullopt;
   if (!from_time || !until_time) return std::nullopt;
-  return Validity{*from_time, *until_time};
+  return ValidityPeriod{*from_time, *until_time};
 }
 
 bool covers_domain(const std::string& document, int domain) {

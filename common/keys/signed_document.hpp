@@ -14,8 +14,8 @@ namespace sidestep {
 
 /// The period in which a subject's permissions are valid on this host, according to a permissions document.
 /// nullopt if the document has no permissions for this subject, or its times cannot be parsed.
-[[nodiscard]] std::optional<Validity> permissions_validity(const std::string& permissions,
-                                                           const std::string& subject);
+[[nodiscard]] std::optional<ValidityPeriod> permissions_validity(const std::string& permissions,
+                                                                 const std::string& subject);
 
 /// Whether a governance or permissions document names the domain, alone or in a range (DDS Security 1.1,
 /// 9.4.1.2.4). As for Fast DDS, a range without a minimum begins at 0, and one without a maximum is its

@@ -11,9 +11,10 @@ namespace sidestep {
 void check_image_size(long columns, long rows);
 
 /// Sets a cell to the state that its pixel encodes.
-inline void set_cell(ImageCells& cells, int column, int row, CellState state, UnknownCells unknown) {
-  cells.unknown += state == CellState::kUnknown;
-  if (state == CellState::kOccupied || (state == CellState::kUnknown && unknown == UnknownCells::kBlocked))
+inline void set_cell(ImageCells& cells, int column, int row, MapCellState state, UnknownCells unknown) {
+  cells.unknown += state == MapCellState::kUnknown;
+  if (state == MapCellState::kOccupied ||
+      (state == MapCellState::kUnknown && unknown == UnknownCells::kBlocked))
     cells.blocked.set(column, row);
 }
 

@@ -32,14 +32,14 @@ struct Interpretation {
   double occupied_above = 0, free_below = 0;
 
   /// The modes trinary and scale differ only for the grey of unknown cells.
-  CellState state(double brightness) const {
+  MapCellState state(double brightness) const {
     double occupied = is_negated ? brightness : 1 - brightness;
     if (mode == Mode::kTrinary && std::abs(occupied - kUnknownGrey) < kThresholdTolerance)
-      return CellState::kUnknown;
+      return MapCellState::kUnknown;
     if (mode == Mode::kRaw) occupied = std::round(255 * brightness) / 100;
-    if (mode == Mode::kRaw && occupied > 1) return CellState::kUnknown;
-    if (occupied > occupied_above) return CellState::kOccupied;
-    return occupied < free_below - kThresholdTolerance ? CellState::kFree : CellState::kUnknown;
+    if (mode == Mode::kRaw && occupied > 1) return MapCellState::kUnknown;
+    if (occupied > occupied_above) return MapCellState::kOccupied;
+    return occupied < free_below - kThresholdTolerance ? MapCellState::kFree : MapCellState::kUnknown;
   }
 };
 

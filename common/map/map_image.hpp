@@ -15,10 +15,10 @@ class MapImageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-enum class CellState : std::uint8_t { kFree, kOccupied, kUnknown };
+enum class MapCellState : std::uint8_t { kFree, kOccupied, kUnknown };
 
 /// Maps a pixel's brightness, from 0 (black) to 1 (white), to the state of its cell.
-using StateOf = std::function<CellState(double brightness)>;
+using StateOf = std::function<MapCellState(double brightness)>;
 
 /// The treatment of cells of unknown occupancy.
 enum class UnknownCells : std::uint8_t { kBlocked, kFree };

@@ -58,7 +58,7 @@ ImageCells read_pgm(std::istream& file, const StateOf& state_of, UnknownCells un
   if (bytes_left(file) + (is_plain ? 1 : 0) < columns * rows * (is_plain || is_wide ? 2 : 1))
     fail_truncated();
 
-  std::vector<CellState> states;
+  std::vector<MapCellState> states;
   for (long sample = 0; sample <= max_sample; ++sample)
     states.push_back(state_of(static_cast<double>(sample) / static_cast<double>(max_sample)));
   ImageCells cells{BitGrid(static_cast<int>(columns), static_cast<int>(rows))};

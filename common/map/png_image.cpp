@@ -73,14 +73,14 @@ ImageCells read_png(std::istream& file, const StateOf& state_of, UnknownCells un
   std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
   image.require(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr));
 
-  std::vector<CellState> states;
+  std::vector<MapCellState> states;
   for (int sum = 0; sum <= 3 * 255; ++sum) states.push_back(state_of(sum / (3 * 255.0)));
   ImageCells cells{BitGrid(columns, rows)};
   const png_byte* pixel = pixels.data();
   for (int row = rows - 1; row >= 0; --row) {
     for (int column = 0; column < columns; ++column, pixel += kChannels) {
       const auto sum = static_cast<std::size_t>(pixel[0] + pixel[1] + pixel[2]);
-      set_cell(cells, column, row, pixel[3] == 255 ? states[sum] : CellState::kUnknown, unknown);
+      set_cell(cells, column, row, pixel[3] == 255 ? states[sum] : MapCellState::kUnknown, unknown);
     }
   }
   return cells;

@@ -11,17 +11,17 @@ namespace {
 
 constexpr char kEscape = '\x1b';
 
-const char* code_of(Colour colour) {
+const char* code_of(TextColour colour) {
   switch (colour) {
-    case Colour::kRed:
+    case TextColour::kRed:
       return "31";
-    case Colour::kGreen:
+    case TextColour::kGreen:
       return "32";
-    case Colour::kYellow:
+    case TextColour::kYellow:
       return "33";
-    case Colour::kBold:
+    case TextColour::kBold:
       return "1";
-    case Colour::kNone:
+    case TextColour::kNone:
       break;
   }
   return "";
@@ -38,9 +38,9 @@ std::string_view piece_at(std::string_view line, std::size_t at) {
 
 }  // namespace
 
-std::string coloured(std::string_view text, Colour colour) {
-  return colour == Colour::kNone ? std::string(text)
-                                 : fmt::format("\x1b[{}m{}\x1b[0m", code_of(colour), text);
+std::string coloured(std::string_view text, TextColour colour) {
+  return colour == TextColour::kNone ? std::string(text)
+                                     : fmt::format("\x1b[{}m{}\x1b[0m", code_of(colour), text);
 }
 
 int columns_of(std::string_view line) {

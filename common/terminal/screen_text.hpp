@@ -9,10 +9,10 @@
 
 namespace sidestep {
 
-enum class Colour { kNone, kRed, kGreen, kYellow, kBold };
+enum class TextColour { kNone, kRed, kGreen, kYellow, kBold };
 
 /// The text between the escape sequences that set and reset the colour.
-[[nodiscard]] std::string coloured(std::string_view text, Colour colour);
+[[nodiscard]] std::string coloured(std::string_view text, TextColour colour);
 
 /// The number of columns of a line. Colours take none, each character takes one.
 [[nodiscard]] int columns_of(std::string_view line);

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "deploy/view/camera_view.hpp"
+#include "deploy/view/camera_images.hpp"
 #include "deploy/view/control/control_api.hpp"
 #include "deploy/view/fields/robot_fields.hpp"
 #include "deploy/view/foxglove/foxglove_server.hpp"
@@ -23,7 +23,7 @@ struct MonitorParts {
   ControlApi* control = nullptr;
   NetworkView* network = nullptr;
   MonitorRecorder* recorder = nullptr;
-  CameraView* cameras = nullptr;
+  CameraImages* cameras = nullptr;
   RobotFields* fields = nullptr;
 };
 

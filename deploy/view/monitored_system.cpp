@@ -67,7 +67,7 @@ class MonitoredSystem {
   Monitor monitor_;
   std::optional<ControlApi> control_;
   std::optional<NetworkView> network_;
-  std::optional<CameraView> cameras_;
+  std::optional<CameraImages> cameras_;
   std::optional<RobotFields> fields_;
   std::optional<MonitorServer> server_;
   std::atomic<DdsBus*> active_bus_;

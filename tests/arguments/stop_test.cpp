@@ -59,7 +59,7 @@ TEST_CASE("a command that reads a recording ends within a second of SIGTERM", "[
   const Case cases[] = {
       {{"sidestep", "bag", "info", file}, 1s, -SIGTERM},
       {{"sidestep", "bag", "cut", file, "--out", folder.file("out.mcap")}, 1s, -SIGTERM},
-      {{"sidestep", "bag", "merge", file, "--out", folder.file("out.mcap")}, 1s, -SIGTERM},
+      {{"sidestep", "bag", "merge", file, "--out", folder.file("merged.mcap")}, 1s, -SIGTERM},
       {{"sidestep", "audit", "--recording", file}, 1s, -SIGTERM},
       {{"sidestep", "topic", "echo", "world", "--recording", file}, 1s, -SIGTERM},
       {{"sidestep", "topic", "delay", "world", "--recording", file}, 1s, -SIGTERM},

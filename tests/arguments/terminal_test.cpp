@@ -278,7 +278,7 @@ TEST_CASE("a simulation keeps its progress in one line of a narrow terminal") {
   const TemporaryFolder folder;
   // Long enough in real time to redraw the line.
   const std::string bytes = printed_in_terminal(
-      {program(), "simulate", SIDESTEP_SOURCE_DIR "/deploy/scenarios/two-teams-22.yaml", "--seconds", "5"},
+      {program(), "simulate", SIDESTEP_SOURCE_DIR "/deploy/scenarios/two-teams-22.yaml", "--seconds", "20"},
       folder.path(), columns);
   const Screen screen = screen_after(bytes, columns);
   INFO(screen.text());

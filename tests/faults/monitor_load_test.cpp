@@ -177,6 +177,8 @@ TEST_CASE("Ctrl-C ends a run and its page, and a run continues without its monit
   const std::uint16_t port = free_port();
   LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port)});
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  const Time granted = run.bus().now();
+  REQUIRE(run.wait_until([&] { return run.bus().now() - granted > std::chrono::seconds(2); }));  // to judge
   SECTION("the user interrupts") {
     REQUIRE(kill(run.pid(), SIGINT) == 0);
     CHECK(run.wait_for_end() == "exit code 0");

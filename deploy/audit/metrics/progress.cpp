@@ -50,19 +50,19 @@ std::string milliseconds_text(Duration duration) {
   return fmt::format("{:.{}f}", value, value < 9.995 ? 2 : value < 99.95 ? 1 : 0);
 }
 
-Colour state_colour(const RobotProgress& row) {
-  if (row.arrived) return Colour::kGreen;
-  if (!row.agent_state) return Colour::kRed;
+TextColour state_colour(const RobotProgress& row) {
+  if (row.arrived) return TextColour::kGreen;
+  if (!row.agent_state) return TextColour::kRed;
   switch (*row.agent_state) {
     case msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND:
     case msg::AgentState::AGENT_ABSENT:
-      return Colour::kRed;
+      return TextColour::kRed;
     case msg::AgentState::AGENT_FENCING:
     case msg::AgentState::AGENT_REGISTERING:
     case msg::AgentState::AGENT_HELD:
-      return Colour::kYellow;
+      return TextColour::kYellow;
     default:
-      return Colour::kNone;
+      return TextColour::kNone;
   }
 }
 
@@ -126,7 +126,7 @@ std::vector<TableColumn> fitting_columns(int width) {
 }
 
 /// A line of the table; the state may have a colour.
-std::string table_line(const TableRow& row, const std::vector<TableColumn>& columns, Colour state) {
+std::string table_line(const TableRow& row, const std::vector<TableColumn>& columns, TextColour state) {
   constexpr std::size_t kState = 2;
   std::string line;
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -163,23 +163,24 @@ std::string progress_table(const RunMetrics& metrics, Time now, const ScreenSize
   const std::vector<TableColumn> columns = fitting_columns(width);
   TableRow titles;
   for (std::size_t i = 0; i < columns.size(); ++i) titles[i] = columns[i].title;
-  text += coloured(table_line(titles, columns, Colour::kNone), has_colours ? Colour::kBold : Colour::kNone) +
+  text += coloured(table_line(titles, columns, TextColour::kNone),
+                   has_colours ? TextColour::kBold : TextColour::kNone) +
           "\n";
   const auto rows = metrics.progress();
   const auto room =
       static_cast<std::size_t>(std::max<std::ptrdiff_t>(screen.rows - 1 - std::ranges::count(text, '\n'), 1));
   const std::size_t shown = rows.size() <= room ? rows.size() : std::max<std::size_t>(room - 1, 1);
   for (std::size_t i = 0; i < shown; ++i)
-    text +=
-        table_line(cells_of(rows[i]), columns, has_colours ? state_colour(rows[i]) : Colour::kNone) + "\n";
+    text += table_line(cells_of(rows[i]), columns, has_colours ? state_colour(rows[i]) : TextColour::kNone) +
+            "\n";
   if (shown < rows.size()) text += fmt::format("... and {} more\n", rows.size() - shown);
   return text;
 }
 
 std::string with_coloured_verdict(const std::string& summary, AuditVerdict verdict) {
-  const Colour colour = verdict == AuditVerdict::kPassed   ? Colour::kGreen
-                        : verdict == AuditVerdict::kFailed ? Colour::kRed
-                                                           : Colour::kYellow;
+  const TextColour colour = verdict == AuditVerdict::kPassed   ? TextColour::kGreen
+                            : verdict == AuditVerdict::kFailed ? TextColour::kRed
+                                                               : TextColour::kYellow;
   const std::size_t end = summary.find_last_not_of('\n') + 1;
   const std::size_t before = summary.substr(0, end).find_last_of('\n');
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;
@@ -192,9 +193,9 @@ ProgressDisplay::ProgressDisplay(std::FILE* stream)
 
 void ProgressDisplay::print(const std::string& line, LogLevel level) {
   table_.erase();
-  const Colour colour = level >= LogLevel::kError     ? Colour::kRed
-                        : level == LogLevel::kWarning ? Colour::kYellow
-                                                      : Colour::kNone;
+  const TextColour colour = level >= LogLevel::kError     ? TextColour::kRed
+                            : level == LogLevel::kWarning ? TextColour::kYellow
+                                                          : TextColour::kNone;
   print_to(stream_, "{}\n", terminal_.has_colours ? coloured(line, colour) : line);
   if (terminal_.can_redraw) next_ = Time{};
 }

@@ -29,7 +29,7 @@ using Lines = std::map<std::string, std::size_t>;  // number of members, indexed
 
 /// A group in one of the outer columns.
 struct PlacedGroup {
-  const ProcessGroup* group;
+  const GraphGroup* group;
   const Lines* lines;
   std::string colour;
   double top_px = 0, height_px = 0;
@@ -46,11 +46,11 @@ std::string cut(const std::string& text, double width_px, double font_px) {
 }
 
 /// A column of groups, from the top; `lines` are those of its side.
-std::vector<PlacedGroup> column(const std::vector<ProcessGroup>& groups, Lines ProcessGroup::*lines,
+std::vector<PlacedGroup> column(const std::vector<GraphGroup>& groups, Lines GraphGroup::*lines,
                                 const std::map<std::string, std::string>& colours) {
   std::vector<PlacedGroup> placed;
   double y_px = kTop_px;
-  for (const ProcessGroup& group : groups) {
+  for (const GraphGroup& group : groups) {
     if ((group.*lines).empty()) continue;
     if (!placed.empty()) y_px += placed.back().group->host == group.host ? kBoxGap_px : kHostGap_px;
     const double height_px = std::max(group.members.size() > 1 ? kNamedBox_px : kMinBox_px,
@@ -99,7 +99,7 @@ std::string box(double x_px, double y_px, double width_px, double height_px, con
 }
 
 std::string draw_group(const PlacedGroup& placed, double x_px) {
-  const ProcessGroup& group = *placed.group;
+  const GraphGroup& group = *placed.group;
   const std::string members = members_text(group);
   const double middle_px = placed.top_px + placed.height_px / 2;
   std::string svg =
@@ -198,15 +198,15 @@ std::string headings(const ProcessGraph& graph, std::size_t hosts) {
 }  // namespace
 
 std::string graph_picture(const ProcessGraph& graph) {
-  const std::vector<ProcessGroup> groups = groups_of(graph);
+  const std::vector<GraphGroup> groups = groups_of(graph);
   std::map<std::string, std::string> colours;  // indexed by kind
   std::set<std::string> hosts;
-  for (const ProcessGroup& group : groups) {
+  for (const GraphGroup& group : groups) {
     colours.emplace(group.kind, distinct_colour(colours.size()));
     hosts.insert(group.host);
   }
-  std::vector<PlacedGroup> writers = column(groups, &ProcessGroup::writes, colours),
-                           readers = column(groups, &ProcessGroup::reads, colours);
+  std::vector<PlacedGroup> writers = column(groups, &GraphGroup::writes, colours),
+                           readers = column(groups, &GraphGroup::reads, colours);
   const double topics_px = kTopicRow_px * static_cast<double>(graph.topics.size());
   const double bottom_px = std::max({bottom_of(writers), bottom_of(readers), kTop_px + topics_px});
   spread(writers, bottom_px);

@@ -62,12 +62,12 @@ std::string ranges_text(const std::set<unsigned>& numbers) {
 
 }  // namespace
 
-std::vector<ProcessGroup> groups_of(const ProcessGraph& graph) {
-  std::vector<ProcessGroup> groups;
+std::vector<GraphGroup> groups_of(const ProcessGraph& graph) {
+  std::vector<GraphGroup> groups;
   for (const ProcessGraph::Process& process : graph.processes) {
     const std::string kind = kind_of(process.name);
     auto group = std::ranges::find_if(
-        groups, [&](const ProcessGroup& known) { return known.host == process.host && known.kind == kind; });
+        groups, [&](const GraphGroup& known) { return known.host == process.host && known.kind == kind; });
     if (group == groups.end()) {
       groups.push_back({process.host, kind, {}, {}, {}});
       group = std::prev(groups.end());
@@ -76,22 +76,22 @@ std::vector<ProcessGroup> groups_of(const ProcessGraph& graph) {
     for (const std::string& topic : process.writes) ++group->writes[topic];
     for (const std::string& topic : process.reads) ++group->reads[topic];
   }
-  for (ProcessGroup& group : groups)
+  for (GraphGroup& group : groups)
     std::ranges::sort(group.members, {}, [](const std::string& name) {
       return std::pair(split(name).number.value_or(0), name);
     });
   std::ranges::stable_sort(
-      groups, {}, [](const ProcessGroup& group) { return std::pair(group.host, rank_of(group.kind)); });
+      groups, {}, [](const GraphGroup& group) { return std::pair(group.host, rank_of(group.kind)); });
   return groups;
 }
 
-std::string title_of(const ProcessGroup& group) {
+std::string title_of(const GraphGroup& group) {
   if (group.members.size() == 1) return group.members.front();
   const bool is_plural = group.kind.ends_with('s');
   return fmt::format("{} {}{}", group.members.size(), group.kind, is_plural ? "" : "s");
 }
 
-std::string members_text(const ProcessGroup& group) {
+std::string members_text(const GraphGroup& group) {
   if (group.members.size() == 1) return {};
   std::set<unsigned> numbers;
   std::vector<std::string> names;

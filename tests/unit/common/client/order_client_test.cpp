@@ -122,8 +122,12 @@ TEST_CASE("a client may have a zone that it has set, that coordinators remember,
   system.run_for(100ms);
   system.tell_memory();
   // Another process of the same client.
-  OrderClient other(system.client_bus, kClient);
+  SimBus other_bus(system.network);
+  OrderClient other(other_bus, kClient);
+  system.run_for(1s);
+  CHECK(other.may_have_zone(8));
   system.tell_memory();
+  CHECK_FALSE(other.may_have_zone(8));
   CHECK(other.may_have_zone(7));
   system.client.remove_zone(7);
   system.run_for(100ms);

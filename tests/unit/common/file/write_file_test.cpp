@@ -166,6 +166,10 @@ TEST_CASE("the check before the work finds a full, a read-only and a closed fold
     disk.fill();
     CHECK_THROWS_WITH(require_replaceable(path), "cannot write " + path + ": No space left on device");
     CHECK_THROWS_WITH(require_openable(path), "cannot write " + path + ": No space left on device");
+    const std::string empty = disk.file("empty");
+    REQUIRE(std::ofstream(empty));
+    CHECK_THROWS_WITH(require_openable(empty), "cannot write " + empty + ": No space left on device");
+    CHECK_NOTHROW(require_openable(disk.file("filling")));  // to empty it makes room
     CHECK_FALSE(fs::exists(path));
   }
   SECTION("read-only") {

@@ -56,7 +56,7 @@ std::string with_chunks(const std::string& png, const std::string& chunks) {
 std::string drawing(const std::string& png, double free_above) {
   std::istringstream file(png);
   const auto state_of = [&](double brightness) {
-    return brightness > free_above ? CellState::kFree : CellState::kOccupied;
+    return brightness > free_above ? MapCellState::kFree : MapCellState::kOccupied;
   };
   const BitGrid bits = read_png(file, state_of, UnknownCells::kBlocked).blocked;
   return test::drawing({MapGrid{bits.columns(), bits.rows(), 1, {0, 0}}, bits});

@@ -12,11 +12,11 @@ TEST_CASE("a line is cut to a number of columns, which colours do not take") {
   CHECK(cut_to("robots", 0) == "");
   CHECK(cut_to("robots", -1) == "");
   CHECK(cut_to("", 5) == "");
-  const std::string line = "a " + coloured("silent", Colour::kRed) + " robot";
+  const std::string line = "a " + coloured("silent", TextColour::kRed) + " robot";
   CHECK(columns_of(line) == 14);
   CHECK(cut_to(line, 5) == "a \x1b[31msil\x1b[0m");
   CHECK(columns_of(cut_to(line, 5)) == 5);
-  CHECK(coloured("plain", Colour::kNone) == "plain");
+  CHECK(coloured("plain", TextColour::kNone) == "plain");
 }
 
 TEST_CASE("a cut does not split a character of several bytes") {

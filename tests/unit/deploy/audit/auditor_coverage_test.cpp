@@ -47,8 +47,8 @@ TEST_CASE("an audit that hears 60 % of the messages does not pass") {
 }
 
 /// The crossing from one time to another, since its first message.
-History crossing_between(Duration from, Duration until) {
-  History history = crossing();
+MessageHistory crossing_between(Duration from, Duration until) {
+  MessageHistory history = crossing();
   const Time begin = history.messages.front().at;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) {
     return received.at < begin + from || received.at >= begin + until;
@@ -63,7 +63,7 @@ TEST_CASE("an audit of less than two seconds judges a run that it hears complete
 }
 
 TEST_CASE("an audit of less than two seconds does not pass if proposals were made before it joined") {
-  History history = crossing_between(1200ms, 3000ms);
+  MessageHistory history = crossing_between(1200ms, 3000ms);
   const Time heard_from = history.messages.front().at + 1000ms;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) {
     return std::holds_alternative<msg::Proposal>(received.message) && received.at < heard_from;
@@ -79,7 +79,7 @@ TEST_CASE("an audit of less than two seconds does not pass if proposals were mad
 TEST_CASE("an audit of robot reports and ground truth alone does not pass, however short it is") {
   const Duration until = GENERATE(Duration(1'500'000'000), Duration(2'500'000'000), Duration(4'000'000'000));
   CAPTURE(to_seconds(until));
-  History history = crossing_between(0ms, until);
+  MessageHistory history = crossing_between(0ms, until);
   std::erase_if(history.messages, [](const ReceivedMessage& received) {
     return !std::holds_alternative<msg::Feedback>(received.message) &&
            !std::holds_alternative<msg::GroundTruth>(received.message);
@@ -94,7 +94,7 @@ TEST_CASE("an audit of robot reports and ground truth alone does not pass, howev
 }
 
 TEST_CASE("an audit without the ledger does not pass even if no robot executes a version") {
-  History history = crossing();
+  MessageHistory history = crossing();
   std::erase_if(history.messages, [](const ReceivedMessage& received) {
     return !std::holds_alternative<msg::Feedback>(received.message) &&
            !std::holds_alternative<msg::GroundTruth>(received.message) &&
@@ -111,7 +111,7 @@ TEST_CASE("an audit without the ledger does not pass even if no robot executes a
 }
 
 TEST_CASE("an audit that finds a violation fails the run even with low coverage") {
-  History history = degraded(crossing(), 5, 0.2, Duration{0});
+  MessageHistory history = degraded(crossing(), 5, 0.2, Duration{0});
   history.scenario.margin_m += 0.005;
   const AuditTotals totals = audit_of(history, {});
   CHECK(totals.coverage.share() < Coverage::kMinimum);
@@ -121,7 +121,7 @@ TEST_CASE("an audit that finds a violation fails the run even with low coverage"
 /// Audits the crossing without the messages of one type in its second half.
 template <typename Message>
 AuditTotals audit_without(const AuditInput& input) {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time from = history.messages.front().at + 1500ms;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) {
     return received.at >= from && std::holds_alternative<Message>(received.message);
@@ -155,7 +155,7 @@ TEST_CASE("an audit that stops hearing messages of one type does not pass even w
 }
 
 TEST_CASE("undecided pairs lower the coverage") {
-  History history = crossing();
+  MessageHistory history = crossing();
   // A history in which all versions were granted with 5 cm too little margin, on unknown bases.
   history.scenario.margin_m += 0.05;
   history.each_version([](msg::Version& version) {
@@ -172,7 +172,7 @@ TEST_CASE("undecided pairs lower the coverage") {
 }
 
 TEST_CASE("an audit that hears no coordinator does not pass") {
-  History history = crossing();
+  MessageHistory history = crossing();
   std::erase_if(history.messages, [](const ReceivedMessage& received) {
     return std::holds_alternative<msg::Verdict>(received.message) ||
            std::holds_alternative<msg::LedgerPage>(received.message) ||
@@ -186,7 +186,7 @@ TEST_CASE("an audit that hears no coordinator does not pass") {
 }
 
 TEST_CASE("agent messages without effect, such as those of a disconnected host, may be missed") {
-  History history = crossing();
+  MessageHistory history = crossing();
   history.remove_if<msg::Command>([](const msg::Command& command) { return !command.has_version(); });
   const AuditTotals totals = audit_of(history, {});
   CHECK(totals.missed > 0);
@@ -194,7 +194,7 @@ TEST_CASE("agent messages without effect, such as those of a disconnected host, 
 }
 
 TEST_CASE("a silent robot is covered but a robot whose reports are missed is not") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time begin = history.messages.front().at, from = begin + 1500ms, until = begin + 2500ms;
   const bool were_sent = GENERATE(false, true);
   CAPTURE(were_sent);
@@ -229,7 +229,7 @@ TEST_CASE("a silent robot is covered but a robot whose reports are missed is not
 
 TEST_CASE(
     "missed robot reports do not lower the time coverage if all versions executed in the gap are known") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time from = history.messages.front().at + 1500ms;
   history.remove_if<msg::Feedback>([&](const msg::Feedback& f) {
     return f.robot() == 2 && time_from_ns(f.header().stamp_ns()) >= from &&

@@ -10,7 +10,7 @@ namespace sidestep::auditor_excuses_test {
 using namespace std::chrono_literals;
 
 /// The time when all robots of the history have arrived and rest.
-Time rest_begin(History& history) {
+Time rest_begin(MessageHistory& history) {
   Time begin = history.messages.front().at;
   history.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
     for (const msg::TrueRobotState& robot : truth.robots()) {
@@ -24,7 +24,7 @@ TEST_CASE("a contact soon after a push is excused, but a contact long after a pu
   const bool is_complete = GENERATE(true, false);
   const auto [after, is_excused] = GENERATE(table<Duration, bool>({{50ms, true}, {400ms, false}}));
   CAPTURE(is_complete, to_seconds(after));
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time push = rest_begin(history) + 150ms;
   REQUIRE(push + after + 100ms < history.messages.back().at);
   history.push(2, push);
@@ -36,7 +36,7 @@ TEST_CASE("a contact soon after a push is excused, but a contact long after a pu
 }
 
 TEST_CASE("a push does not excuse a contact of the pushed robot's neighbours") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time push = history.messages.front().at + 1500ms;
   history.push(2, push);
   history.touch(0, 1, push + 50ms);
@@ -46,7 +46,7 @@ TEST_CASE("a push does not excuse a contact of the pushed robot's neighbours") {
 }
 
 TEST_CASE("excused contacts are listed by cause and pair, with the share of excused time") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time push = history.messages.front().at + 1500ms;
   history.push(2, push);
   history.touch(2, 5, push + 50ms);
@@ -69,7 +69,7 @@ TEST_CASE("excused contacts are listed by cause and pair, with the share of excu
 }
 
 TEST_CASE("a run without disturbances excuses nothing") {
-  History history = crossing();
+  MessageHistory history = crossing();
   history.touch(2, 3, history.messages.front().at + 1s);
   const AuditTotals totals = audit_of(history, kComplete);
   CHECK(count(totals, AuditRule::kContact) == 1);
@@ -79,7 +79,7 @@ TEST_CASE("a run without disturbances excuses nothing") {
 }
 
 TEST_CASE("contacts that ground truth counts but does not list are neither excused nor violations") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time push = history.messages.front().at + 1500ms;
   history.push(2, push);
   for (int i = 0; i < 12; ++i) history.touch(2, 5, push + 50ms);

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 /// The audit of a history in which all messages of one type arrive late.
 template <typename Late>
-AuditTotals audit_with_delayed(const History& history, Duration delay) {
+AuditTotals audit_with_delayed(const MessageHistory& history, Duration delay) {
   std::vector<Delivery> deliveries;
   for (const ReceivedMessage& received : history.messages) {
     const bool is_late = std::holds_alternative<Late>(received.message);
@@ -43,7 +43,7 @@ TEST_CASE("an auditor that receives all messages of one kind late raises no fals
 
 TEST_CASE(
     "an auditor that missed an attestation of absence does not demand the absent robot's registration") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time back = history.messages.front().at + 2s;
   const auto is_of_absent = [](const auto& message) { return message.robot() == 3; };
   history.remove_if<msg::Registration>(is_of_absent);
@@ -73,7 +73,7 @@ TEST_CASE(
 }
 
 TEST_CASE("two agents may use the same proposal number, even if the auditor misses one agent's proposal") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Switch s = first_moving_switch(history);
   // Adds a restarted agent that proposes the same number and is granted its second candidate.
   std::optional<ReceivedMessage> grant;
@@ -92,7 +92,7 @@ TEST_CASE("two agents may use the same proposal number, even if the auditor miss
 }
 
 TEST_CASE("a robot that starts beside an obstacle may drive away, even if its earlier versions were missed") {
-  History history = crossing();
+  MessageHistory history = crossing();
   // The history ends before the first of the other robots passes the obstacle.
   const Time end = history.messages.front().at + 1500ms;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) { return received.at > end; });
@@ -112,10 +112,10 @@ TEST_CASE("a robot that starts beside an obstacle may drive away, even if its ea
 }
 
 /// The crossing with a second coordinator that takes over while the robots drive.
-History takeover() {
+MessageHistory takeover() {
   Scenario scenario = crossing().scenario;
   scenario.coordinators = 2;
-  History history{scenario, {}};
+  MessageHistory history{scenario, {}};
   SimSystem system(scenario, 5);
   const HistoryRecorder recorder(system, history);
   system.run_for(2s);
@@ -127,7 +127,7 @@ History takeover() {
 }
 
 TEST_CASE("a registered version may have been granted in an earlier epoch whose grants were missed") {
-  History history = takeover();
+  MessageHistory history = takeover();
   require_no_violation(audit_of(history, kComplete));
   Epoch last = 0;
   history.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) { last = std::max(last, page.epoch()); });
@@ -138,8 +138,8 @@ TEST_CASE("a registered version may have been granted in an earlier epoch whose 
 }
 
 /// The crossing in which a robot is lifted and put down elsewhere.
-History lift_and_place() {
-  History history{crossing().scenario, {}};
+MessageHistory lift_and_place() {
+  MessageHistory history{crossing().scenario, {}};
   SimSystem system(history.scenario, 6);
   const HistoryRecorder recorder(system, history);
   msg::Disturbance disturbance;
@@ -159,7 +159,7 @@ History lift_and_place() {
 }
 
 TEST_CASE("a robot that is put down elsewhere raises no false alarm if its lifting was missed") {
-  History history = lift_and_place();
+  MessageHistory history = lift_and_place();
   require_no_violation(audit_of(history, kComplete));
   std::uint64_t lifted = 0;
   history.each<msg::Feedback>([&](msg::Feedback& robot_report, Time) { lifted += robot_report.is_lifted(); });
@@ -185,7 +185,7 @@ TEST_CASE("a robot that is put down elsewhere raises no false alarm if its lifti
 }
 
 TEST_CASE("a contact before an auditor joined is not judged") {
-  History history = crossing();
+  MessageHistory history = crossing();
   history.touch(2, 3, history.messages.front().at + 500ms);
   const Time joined = history.messages.front().at + 1s;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) { return received.at < joined; });
@@ -199,7 +199,7 @@ TEST_CASE("a contact before an auditor joined is not judged") {
 TEST_CASE("if messages were missed, contacts of disturbed robots are not judged, but other contacts are") {
   const bool is_of_disturbed = GENERATE(true, false);
   CAPTURE(is_of_disturbed);
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time push = history.messages.front().at + 500ms;
   history.push(2, push);
   history.touch(is_of_disturbed ? 2 : 4, is_of_disturbed ? 3 : 5, push + 3s);
@@ -215,7 +215,7 @@ TEST_CASE("if messages were missed, contacts of disturbed robots are not judged,
 }
 
 TEST_CASE("an auditor that hears no ledger pages does not judge") {
-  History history = crossing();
+  MessageHistory history = crossing();
   history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
   const AuditTotals totals = audit_of(history, {});
   CHECK(totals.violations == 0);

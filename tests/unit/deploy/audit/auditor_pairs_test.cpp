@@ -31,7 +31,7 @@ bool excludes(const msg::Feedback& robot_report, const Version& version) {
 }
 
 /// All versions that were granted or registered, in one epoch, by agents that did not restart.
-VersionFactsByNumber pasts_of(History& history) {
+VersionFactsByNumber pasts_of(MessageHistory& history) {
   VersionFactsByNumber pasts;
   std::map<std::pair<RobotId, VersionNumber>, Version> proposed;
   std::map<RobotId, msg::Feedback> robot_reports;
@@ -148,7 +148,7 @@ std::map<Pair, Judgement> judged_pairs(
 }
 
 /// How often an audit reports each pair.
-std::map<Pair, int> reported_pairs(const History& history, const AuditInput& input) {
+std::map<Pair, int> reported_pairs(const MessageHistory& history, const AuditInput& input) {
   std::map<Pair, int> pairs;
   audit_of(history, input, [&](const Violation& violation) {
     if (violation.rule != AuditRule::kClearance) return;
@@ -181,8 +181,8 @@ bool were_executed_concurrently(const VersionFacts& a, const VersionFacts& b, st
 }
 
 /// The crossing as if all versions had been granted with too little margin, some of them with inflation.
-History too_close(double less_m) {
-  History history = crossing();
+MessageHistory too_close(double less_m) {
+  MessageHistory history = crossing();
   history.scenario.margin_m += less_m;
   history.each_version([](msg::Version& version) { version.inflation_m(0.004 * (version.robot() % 3)); });
   return history;
@@ -206,7 +206,7 @@ void check_reported(const std::map<Pair, Judgement>& expected, const std::map<Pa
 TEST_CASE("each pair of versions that are in the ledger together and too close is reported exactly once") {
   const double less_m = GENERATE(0.05, 0.15);
   CAPTURE(less_m);
-  History history = too_close(less_m);
+  MessageHistory history = too_close(less_m);
   check_reported(judged_pairs(history.scenario, pasts_of(history), were_in_ledger_together),
                  reported_pairs(history, kComplete));
 }
@@ -214,7 +214,7 @@ TEST_CASE("each pair of versions that are in the ledger together and too close i
 TEST_CASE("an audit that hears no grants reports exactly the pairs that were executed too close together") {
   const double less_m = GENERATE(0.05, 0.15), clock_bound_s = GENERATE(0.001, 0.004);
   CAPTURE(less_m, clock_bound_s);
-  History history = too_close(less_m);
+  MessageHistory history = too_close(less_m);
   history.scenario.clock_bound_s = clock_bound_s;
   const auto expected =
       judged_pairs(history.scenario, pasts_of(history), [&](const VersionFacts& a, const VersionFacts& b) {
@@ -227,7 +227,7 @@ TEST_CASE("an audit that hears no grants reports exactly the pairs that were exe
 
 TEST_CASE("reports of a robot whose clock is out of bounds do not prove that a pair was too close") {
   const std::size_t place = GENERATE(0u, 1u);
-  History history = too_close(0.15);
+  MessageHistory history = too_close(0.15);
   history.remove_if<msg::Verdict>([](const msg::Verdict&) { return true; });
   history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
   const auto before = reported_pairs(history, kComplete);
@@ -249,7 +249,7 @@ TEST_CASE("an audit that may miss messages reports most pairs that are too close
   const double less_m = GENERATE(0.05, 0.15);
   const bool has_pages = GENERATE(true, false);
   CAPTURE(less_m, has_pages);
-  History history = too_close(less_m);
+  MessageHistory history = too_close(less_m);
   const std::int64_t clock_bound_ns = from_seconds(history.scenario.clock_bound_s).count();
   const auto expected =
       judged_pairs(history.scenario, pasts_of(history), [&](const VersionFacts& a, const VersionFacts& b) {

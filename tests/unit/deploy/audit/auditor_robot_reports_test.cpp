@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 TEST_CASE("each firmware breach is reported under its rule") {
   SECTION("the robot executes a version that was never sent") {
-    require_violation(AuditRule::kSent, [](History& h) {
+    require_violation(AuditRule::kSent, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.remove_if<msg::Command>([&](const msg::Command& c) {
         return c.robot() == s.robot && c.has_version() && c.version().version_number() == s.number;
@@ -20,13 +20,13 @@ TEST_CASE("each firmware breach is reported under its rule") {
     });
   }
   SECTION("the robot switches from a version other than the base") {
-    require_violation(AuditRule::kSwitch, [](History& h) {
+    require_violation(AuditRule::kSwitch, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
     });
   }
   SECTION("the robot switches after the start has passed") {
-    require_violation(AuditRule::kLateSwitch, [](History& h) {
+    require_violation(AuditRule::kLateSwitch, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       msg::Feedback* last = nullptr;
       h.each<msg::Feedback>([&](msg::Feedback& f, Time) {
@@ -36,7 +36,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
     });
   }
   SECTION("the robot executes a version of a superseded agent") {
-    require_violation(AuditRule::kStaleIncarnation, [](History& h) {
+    require_violation(AuditRule::kStaleIncarnation, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
         if (f.robot() == s.robot && to_ns(at) > s.start_ns - 30'000'000)
@@ -45,7 +45,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
     });
   }
   SECTION("the robot executes a version of a superseded epoch") {
-    require_violation(AuditRule::kStaleEpoch, [](History& h) {
+    require_violation(AuditRule::kStaleEpoch, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
         if (f.robot() == s.robot && to_ns(at) > s.start_ns) f.obeyed_epoch(f.obeyed_epoch() + 1);
@@ -59,7 +59,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
         [](msg::Feedback& f, const msg::Feedback& old) { f.valid_at_ns(old.valid_at_ns()); },
         [](msg::Feedback& f, const msg::Feedback&) { f.obeyed_incarnation(f.obeyed_incarnation() - 1); },
         [](msg::Feedback& f, const msg::Feedback&) { f.obeyed_epoch(f.obeyed_epoch() - 1); });
-    require_violation(AuditRule::kFacts, [&](History& h) {
+    require_violation(AuditRule::kFacts, [&](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       std::optional<msg::Feedback> old;
       bool is_done = false;
@@ -73,7 +73,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
     });
   }
   SECTION("the robot's own stop does not end at rest") {
-    require_violation(AuditRule::kOffReference, [](History& h) {
+    require_violation(AuditRule::kOffReference, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       bool is_done = false;
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
@@ -92,7 +92,7 @@ TEST_CASE("an own stop that takes longer than braking needs is reported") {
   const auto [factor, is_reported] =
       GENERATE(table<double, bool>({{1.0, false}, {1.005, false}, {1.2, true}}));
   CAPTURE(factor);
-  const AuditTotals totals = audit_tampered_crossing([longer = factor](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([longer = factor](MessageHistory& h) {
     const Switch s = first_moving_switch(h);
     const double speed_mps = 1, braking_s = speed_mps / h.scenario.limits.deceleration_mps2;
     bool is_done = false;
@@ -124,14 +124,15 @@ TEST_CASE("a robot whose distance from its reference exceeds the budget is repor
                                               {0.006, 0ms, false},
                                               {0.006, 20ms, true}}));
   CAPTURE(error_m, to_seconds(duration), is_reported);
-  const AuditTotals totals = audit_tampered_crossing([&, off_m = error_m, until = duration](History& h) {
-    std::optional<Time> first;
-    h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
-      if (f.robot() != 2 || at < h.messages.front().at + 1500ms) return;
-      if (!first) first = at;
-      if (at <= *first + until) f.tracking_error_m(off_m);
-    });
-  });
+  const AuditTotals totals =
+      audit_tampered_crossing([&, off_m = error_m, until = duration](MessageHistory& h) {
+        std::optional<Time> first;
+        h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
+          if (f.robot() != 2 || at < h.messages.front().at + 1500ms) return;
+          if (!first) first = at;
+          if (at <= *first + until) f.tracking_error_m(off_m);
+        });
+      });
   INFO(lines(totals));
   CHECK((count(totals, AuditRule::kTracking) > 0) == is_reported);
 }
@@ -139,7 +140,7 @@ TEST_CASE("a robot whose distance from its reference exceeds the budget is repor
 TEST_CASE("ground truth also shows robots beyond the tracking bound in a live run") {
   const auto [error_m, is_reported] = GENERATE(table<double, bool>({{0.0045, false}, {0.0055, true}}));
   CAPTURE(error_m);
-  History history = crossing();
+  MessageHistory history = crossing();
   history.each<msg::GroundTruth>([off_m = error_m](msg::GroundTruth& truth, Time) {
     for (msg::TrueRobotState& robot : truth.robots()) robot.reference_error_m(off_m);
   });
@@ -150,7 +151,7 @@ TEST_CASE("ground truth also shows robots beyond the tracking bound in a live ru
 }
 
 TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule") {
-  const AuditTotals totals = audit_tampered_crossing([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](MessageHistory& h) {
     int count = 0;
     h.each<msg::Feedback>([&](msg::Feedback& f, Time) {
       if (f.robot() != 2 || ++count != 100) return;
@@ -163,7 +164,7 @@ TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule
 
 TEST_CASE("a late report of a robot's former incarnation changes nothing") {
   const auto totals_with = [](bool is_delivered_late) {
-    History history = crossing();
+    MessageHistory history = crossing();
     const Time set_back = history.messages.front().at + 1500ms;
     std::optional<msg::Feedback> last;
     history.each<msg::Feedback>([&](msg::Feedback& robot_report, Time at) {
@@ -195,7 +196,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
   SECTION("a robot is displaced") {
     const double shift_m = GENERATE(0.007, 0.02);
     CAPTURE(shift_m);
-    require_violation(AuditRule::kPosition, [shift_m](History& h) {
+    require_violation(AuditRule::kPosition, [shift_m](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time) {
         for (msg::TrueRobotState& robot : truth.robots()) {
@@ -209,17 +210,18 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     const auto [pushed, late, is_reported] = GENERATE(
         table<int, Duration, bool>({{-1, 0ms, true}, {2, 0ms, false}, {2, 1200ms, true}, {3, 0ms, true}}));
     CAPTURE(pushed, to_seconds(late), is_reported);
-    const AuditTotals totals = audit_tampered_crossing([&, robot_pushed = pushed, after = late](History& h) {
-      const Time push = h.messages.front().at + 1500ms;
-      const RobotId moved = first_moving_switch(h).robot;
-      h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
-        if (at < push + after || at > push + after + 500ms) return;
-        for (msg::TrueRobotState& robot : truth.robots()) {
-          if (robot.robot() == moved) robot.x_m(robot.x_m() + 0.02);
-        }
-      });
-      if (robot_pushed >= 0) h.push(static_cast<RobotId>(robot_pushed), push);
-    });
+    const AuditTotals totals =
+        audit_tampered_crossing([&, robot_pushed = pushed, after = late](MessageHistory& h) {
+          const Time push = h.messages.front().at + 1500ms;
+          const RobotId moved = first_moving_switch(h).robot;
+          h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
+            if (at < push + after || at > push + after + 500ms) return;
+            for (msg::TrueRobotState& robot : truth.robots()) {
+              if (robot.robot() == moved) robot.x_m(robot.x_m() + 0.02);
+            }
+          });
+          if (robot_pushed >= 0) h.push(static_cast<RobotId>(robot_pushed), push);
+        });
     INFO(lines(totals));
     CHECK((count(totals, AuditRule::kPosition) > 0) == is_reported);
     CHECK((totals.excused_displacements > 0) == !is_reported);
@@ -227,7 +229,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
   SECTION("a contact occurs long after a push, also in an incomplete history") {
     const bool is_complete = GENERATE(true, false);
     CAPTURE(is_complete);
-    History history = crossing();
+    MessageHistory history = crossing();
     const Time push = history.messages.front().at + 500ms;
     history.push(2, push);
     history.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
@@ -245,7 +247,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
         GENERATE(table<RobotId, RobotId, std::uint64_t, std::uint64_t>(
             {{4, 5, 3, 0}, {0, 1, 2, 1}, {5, msg::NO_ROBOT, 3, 0}, {1, msg::NO_ROBOT, 2, 1}}));
     CAPTURE(first, second);
-    const AuditTotals totals = audit_tampered_crossing([a = first, b = second](History& h) {
+    const AuditTotals totals = audit_tampered_crossing([a = first, b = second](MessageHistory& h) {
       const Time push = h.messages.front().at + 1500ms;
       h.push(2, push);
       h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
@@ -263,22 +265,22 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     CHECK(count(totals, AuditRule::kContact) == reported);
   }
   SECTION("a contact occurs") {
-    require_violation(AuditRule::kContact, [](History& h) {
+    require_violation(AuditRule::kContact, [](MessageHistory& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.contacts(1); });
     });
   }
   SECTION("something touches a moving robot") {
-    require_violation(AuditRule::kCrash, [](History& h) {
+    require_violation(AuditRule::kCrash, [](MessageHistory& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.crashes_while_moving(1); });
     });
   }
   SECTION("more moving robots are touched than ground truth lists") {
-    require_violation(AuditRule::kCrash, [](History& h) {
+    require_violation(AuditRule::kCrash, [](MessageHistory& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.crashes_while_moving(100); });
     });
   }
   SECTION("the simulator's firmware monitor finds a violation") {
-    require_violation(AuditRule::kFirmwareMonitor, [](History& h) {
+    require_violation(AuditRule::kFirmwareMonitor, [](MessageHistory& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.firmware_violations(2); });
     });
   }

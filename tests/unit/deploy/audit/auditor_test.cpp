@@ -44,7 +44,7 @@ TEST_CASE("an unmodified history that is received incompletely raises no false a
 TEST_CASE("versions too close to each other are found even in an incomplete history") {
   const bool is_degraded = GENERATE(false, true);
   CAPTURE(is_degraded);
-  History history = is_degraded ? degraded(crossing(), 5, 0.2, Duration{0}) : crossing();
+  MessageHistory history = is_degraded ? degraded(crossing(), 5, 0.2, Duration{0}) : crossing();
   // Equivalent to granting all versions with 5 mm too little margin.
   history.scenario.margin_m += 0.005;
   const AuditTotals totals = audit_of(history, is_degraded ? AuditInput{} : kComplete);
@@ -53,7 +53,7 @@ TEST_CASE("versions too close to each other are found even in an incomplete hist
 
 TEST_CASE("the inflations of both robots add to the distance that their versions must keep") {
   const auto is_too_close = [](double more_m, double inflation_m) {
-    History history = crossing();
+    MessageHistory history = crossing();
     history.scenario.margin_m += more_m;
     history.each_version([&](msg::Version& version) { version.inflation_m(inflation_m); });
     return count(audit_of(history, kComplete), AuditRule::kClearance) > 0;
@@ -75,7 +75,7 @@ TEST_CASE("the inflations of both robots add to the distance that their versions
 
 TEST_CASE("each wrong grant is reported under its rule") {
   SECTION("one version number has two trajectories") {
-    require_violation(AuditRule::kUniqueVersion, [](History& h) {
+    require_violation(AuditRule::kUniqueVersion, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       bool is_done = false;
       h.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
@@ -88,19 +88,19 @@ TEST_CASE("each wrong grant is reported under its rule") {
     });
   }
   SECTION("the base is unknown") {
-    require_violation(AuditRule::kBase, [](History& h) {
+    require_violation(AuditRule::kBase, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
     });
   }
   SECTION("the version does not continue its base") {
-    require_violation(AuditRule::kContinuity, [](History& h) {
+    require_violation(AuditRule::kContinuity, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.x_m(v.x_m() + 1e-5); });
     });
   }
   SECTION("the acceleration is too high") {
-    require_violation(AuditRule::kLimits, [](History& h) {
+    require_violation(AuditRule::kLimits, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [](msg::Version& v) {
         for (msg::MotionPhase& phase : v.phases()) phase.ax_mps2(phase.ax_mps2() + 6);
@@ -108,7 +108,7 @@ TEST_CASE("each wrong grant is reported under its rule") {
     });
   }
   SECTION("the version accelerates at D once its velocity has reversed") {
-    require_violation(AuditRule::kLimits, [](History& h) {
+    require_violation(AuditRule::kLimits, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [](msg::Version& v) {
         const Vec2 velocity(v.vx_mps(), v.vy_mps());
@@ -130,27 +130,27 @@ TEST_CASE("each wrong grant is reported under its rule") {
     });
   }
   SECTION("the version does not brake at the end") {
-    require_violation(AuditRule::kRest, [](History& h) {
+    require_violation(AuditRule::kRest, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number,
                       [](msg::Version& v) { v.phase_count(static_cast<std::uint8_t>(v.phase_count() - 1)); });
     });
   }
   SECTION("the version leaves the field") {
-    require_violation(AuditRule::kField, [](History& h) {
+    require_violation(AuditRule::kField, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.x_m(h.scenario.field.length_m / 2); });
     });
   }
   SECTION("the version leads through an obstacle") {
-    require_violation(AuditRule::kObstacle, [](History& h) {
+    require_violation(AuditRule::kObstacle, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       const Vec2 centre_m = sidestep::centre_m(h.scenario.obstacles.front());
       h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.x_m(centre_m.x()), v.y_m(centre_m.y()); });
     });
   }
   SECTION("the version leads through a blocked map cell") {
-    require_violation(AuditRule::kObstacle, [](History& h) {
+    require_violation(AuditRule::kObstacle, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       const Vec2 at_m(h.scenario.field.length_m / 4, h.scenario.field.width_m / 4);
       MapGrid grid;
@@ -164,19 +164,19 @@ TEST_CASE("each wrong grant is reported under its rule") {
     });
   }
   SECTION("the version has an inflation that its base does not have") {
-    require_violation(AuditRule::kInflation, [](History& h) {
+    require_violation(AuditRule::kInflation, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [](msg::Version& v) { v.inflation_m(0.001); });
     });
   }
   SECTION("the base has a higher number than the version") {
-    require_violation(AuditRule::kVersionOrder, [](History& h) {
+    require_violation(AuditRule::kVersionOrder, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.for_each_copy(s.robot, s.number, [](msg::Version& v) { v.base(v.version_number() + 1); });
     });
   }
   SECTION("the version was not proposed") {
-    require_violation(AuditRule::kProposed, [](History& h) {
+    require_violation(AuditRule::kProposed, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::Verdict>([&](msg::Verdict& v, Time) {
         if (v.robot() == s.robot && v.granted_version() == s.number) v.granted_version(s.number + 100);
@@ -184,19 +184,19 @@ TEST_CASE("each wrong grant is reported under its rule") {
     });
   }
   SECTION("a robot has not registered yet") {
-    require_violation(AuditRule::kAllRegistered, [](History& h) {
+    require_violation(AuditRule::kAllRegistered, [](MessageHistory& h) {
       h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
     });
   }
   SECTION("an unregistered robot was attested absent too late") {
-    require_violation(AuditRule::kAllRegistered, [](History& h) {
+    require_violation(AuditRule::kAllRegistered, [](MessageHistory& h) {
       h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
       h.messages.push_back({h.messages.back().at, attestation_of(3)});
     });
   }
   SECTION("a robot obeys an older epoch") {
     const AuditTotals totals = [] {
-      History history = crossing();
+      MessageHistory history = crossing();
       history.each<msg::Feedback>([](msg::Feedback& f, Time) {
         if (f.robot() == 3) f.obeyed_epoch(0);
       });
@@ -205,7 +205,7 @@ TEST_CASE("each wrong grant is reported under its rule") {
     CHECK(count(totals, AuditRule::kAllRegistered) == 1);
   }
   SECTION("two coordinators grant in one epoch") {
-    require_violation(AuditRule::kSingleCoordinator, [](History& h) {
+    require_violation(AuditRule::kSingleCoordinator, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::Verdict>([&](msg::Verdict& v, Time) {
         if (v.robot() == s.robot && v.granted_version() == s.number)
@@ -214,7 +214,7 @@ TEST_CASE("each wrong grant is reported under its rule") {
     });
   }
   SECTION("the ledger drops a version that no robot report has excluded") {
-    require_violation(AuditRule::kLedgerPage, [](History& h) {
+    require_violation(AuditRule::kLedgerPage, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
         std::erase_if(page.versions(), [&](const msg::Version& v) {
@@ -224,7 +224,7 @@ TEST_CASE("each wrong grant is reported under its rule") {
     });
   }
   SECTION("the ledger lists a version that was not granted") {
-    require_violation(AuditRule::kLedgerPage, [](History& h) {
+    require_violation(AuditRule::kLedgerPage, [](MessageHistory& h) {
       bool is_done = false;
       h.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
         if (std::exchange(is_done, true)) return;
@@ -238,21 +238,21 @@ TEST_CASE("each wrong grant is reported under its rule") {
 
 TEST_CASE("each breach by an agent is reported under its rule") {
   SECTION("the registration lacks the version that the robot executes") {
-    require_violation(AuditRule::kRegistration, [](History& h) {
+    require_violation(AuditRule::kRegistration, [](MessageHistory& h) {
       h.each<msg::Registration>([](msg::Registration& r, Time) {
         if (r.robot() == 1) r.versions()[0].version_number(5);
       });
     });
   }
   SECTION("the agent registers before the robot has acknowledged it") {
-    require_violation(AuditRule::kAcknowledged, [](History& h) {
+    require_violation(AuditRule::kAcknowledged, [](MessageHistory& h) {
       h.each<msg::Registration>([](msg::Registration& r, Time) {
         if (r.robot() == 1) r.header().incarnation(r.header().incarnation() + 1);
       });
     });
   }
   SECTION("the agent sends a command that was not granted") {
-    require_violation(AuditRule::kForwarded, [](History& h) {
+    require_violation(AuditRule::kForwarded, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::Command>([&](msg::Command& c, Time) {
         if (c.robot() == s.robot && c.has_version() && c.version().version_number() == s.number)
@@ -261,7 +261,7 @@ TEST_CASE("each breach by an agent is reported under its rule") {
     });
   }
   SECTION("the agent sends a candidate that was not granted, in an incomplete history") {
-    History history = crossing();
+    MessageHistory history = crossing();
     const Switch s = first_moving_switch(history);
     history.each<msg::Verdict>([&](msg::Verdict& v, Time) {
       if (v.robot() == s.robot && v.granted_version() == s.number) v.granted_version(s.number + 1);
@@ -271,7 +271,7 @@ TEST_CASE("each breach by an agent is reported under its rule") {
     CHECK(count(totals, AuditRule::kForwarded) == 1);
   }
   SECTION("the agent sends commands under a lower epoch") {
-    require_violation(AuditRule::kEpochRegression, [](History& h) {
+    require_violation(AuditRule::kEpochRegression, [](MessageHistory& h) {
       const Switch s = first_moving_switch(h);
       h.each<msg::Command>([&](msg::Command& c, Time at) {
         if (c.robot() == s.robot && to_ns(at) > s.start_ns) c.epoch(c.epoch() - 1);
@@ -281,7 +281,7 @@ TEST_CASE("each breach by an agent is reported under its rule") {
 }
 
 TEST_CASE("a verdict that is repeated much later breaks no rule") {
-  const AuditTotals totals = audit_tampered_crossing([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](MessageHistory& h) {
     const Switch s = first_moving_switch(h);
     const auto is_grant = [&](const ReceivedMessage& m) {
       const auto* verdict = std::get_if<msg::Verdict>(&m.message);
@@ -300,7 +300,7 @@ TEST_CASE("a verdict that is repeated much later breaks no rule") {
 TEST_CASE("a granted version stays granted even if a later agent's proposal with its number is denied") {
   // A restarted agent may reuse the last numbers of its predecessor.
   const std::uint64_t numbers_before = GENERATE(0u, 2u);
-  const AuditTotals totals = audit_tampered_crossing([&](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([&](MessageHistory& h) {
     const Switch s = first_moving_switch(h);
     std::optional<msg::Proposal> proposal;
     h.each<msg::Proposal>([&](msg::Proposal& p, Time) {
@@ -334,7 +334,7 @@ TEST_CASE("a granted version stays granted even if a later agent's proposal with
 }
 
 TEST_CASE("an operator's attestation of absence replaces a robot's registration") {
-  const AuditTotals totals = audit_tampered_crossing([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](MessageHistory& h) {
     h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
     h.remove_if<msg::Feedback>([](const msg::Feedback& f) { return f.robot() == 3; });
     h.messages.insert(h.messages.begin(), {h.messages.front().at, attestation_of(3)});
@@ -346,7 +346,7 @@ TEST_CASE("an operator's attestation of absence replaces a robot's registration"
 TEST_CASE("an attested absence stays valid in its epoch even if the agent registers in an older epoch") {
   const bool is_in_time = GENERATE(true, false);
   CAPTURE(is_in_time);
-  const AuditTotals totals = audit_tampered_crossing([&](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([&](MessageHistory& h) {
     std::optional<msg::Registration> late;
     h.each<msg::Registration>([&](const msg::Registration& r, Time) {
       if (r.robot() == 3) late = r;
@@ -374,7 +374,7 @@ TEST_CASE("an attested absence stays valid in its epoch even if the agent regist
 }
 
 TEST_CASE("a coordinator that resumes after many epochs may use its old registrations") {
-  const AuditTotals totals = audit_tampered_crossing([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](MessageHistory& h) {
     // Adds forty successive coordinators with which every agent registers.
     std::vector<ReceivedMessage> messages;
     for (const ReceivedMessage& received : h.messages) {
@@ -412,7 +412,7 @@ TEST_CASE("an epoch memory holds the highest epochs and knows which lower epochs
 }
 
 TEST_CASE("invalid messages are counted and otherwise ignored") {
-  const AuditTotals totals = audit_tampered_crossing([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](MessageHistory& h) {
     int number = 0;
     h.each<msg::Feedback>([&](msg::Feedback& f, Time) {
       if (++number % 100 == 0) f.x_m(std::nan(""));

@@ -8,14 +8,14 @@ namespace sidestep::auditor_vision_test {
 using namespace std::chrono_literals;
 
 /// The crossing as seen by a system without ground truth.
-History seen_crossing() {
-  History history = crossing();
+MessageHistory seen_crossing() {
+  MessageHistory history = crossing();
   history.remove_if<msg::GroundTruth>([](const msg::GroundTruth&) { return true; });
   return history;
 }
 
 /// Changes vision's observations of one robot between `from` and `until` after the beginning.
-void change_sight(History& history, RobotId robot, Duration from, Duration until,
+void change_sight(MessageHistory& history, RobotId robot, Duration from, Duration until,
                   const std::function<void(msg::TrackedRobot&, const msg::WorldState&)>& change) {
   const Time begin = history.messages.front().at;
   history.each<msg::WorldState>([&](msg::WorldState& world, Time at) {
@@ -63,7 +63,7 @@ TEST_CASE("an incomplete history without ground truth raises no false alarm") {
 }
 
 TEST_CASE("with ground truth, vision is not used even if it shows a displacement") {
-  History history = crossing();
+  MessageHistory history = crossing();
   change_sight(history, 2, 1500ms, 2500ms,
                [](msg::TrackedRobot& robot, const msg::WorldState&) { shift(robot, 0.5); });
   const AuditTotals totals = audit_of(history, kComplete);
@@ -72,7 +72,7 @@ TEST_CASE("with ground truth, vision is not used even if it shows a displacement
 }
 
 TEST_CASE("ground truth that arrives late replaces vision, and the report says so") {
-  History history = crossing();
+  MessageHistory history = crossing();
   const Time late = history.messages.front().at + 2s;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) {
     return received.at < late && std::holds_alternative<msg::GroundTruth>(received.message);
@@ -87,7 +87,7 @@ TEST_CASE("a displacement shown by vision is reported once if it lasts") {
   const auto [duration, reported] = GENERATE(table<Duration, std::uint64_t>({{100ms, 0}, {800ms, 1}}));
   const bool is_complete = GENERATE(true, false);
   CAPTURE(to_seconds(duration), is_complete);
-  History history = seen_crossing();
+  MessageHistory history = seen_crossing();
   change_sight(history, 2, 2s, 2s + duration,
                [](msg::TrackedRobot& robot, const msg::WorldState&) { shift(robot, 0.03); });
   const AuditTotals totals = audit_of(history, is_complete ? kComplete : AuditInput{});
@@ -99,7 +99,7 @@ TEST_CASE("contacts shown by vision are reported") {
   const double distance_m = GENERATE(0.178, 0.186);
   const bool is_complete = GENERATE(true, false);
   CAPTURE(distance_m, is_complete);
-  History history = seen_crossing();
+  MessageHistory history = seen_crossing();
   change_sight(history, 2, 2s, 2100ms, [&](msg::TrackedRobot& robot, const msg::WorldState& world) {
     put_beside(robot, world, 3, distance_m);
   });
@@ -111,7 +111,7 @@ TEST_CASE("contacts shown by vision are reported") {
 TEST_CASE("a disturbance announced by an operator excuses a contact shown by vision") {
   const RobotId pushed = GENERATE(RobotId{2}, RobotId{5});
   CAPTURE(pushed);
-  History history = seen_crossing();
+  MessageHistory history = seen_crossing();
   history.push(pushed, history.messages.front().at + 1900ms);
   change_sight(history, 2, 2s, 2100ms, [](msg::TrackedRobot& robot, const msg::WorldState& world) {
     put_beside(robot, world, 3, 0.178);
@@ -123,7 +123,7 @@ TEST_CASE("a disturbance announced by an operator excuses a contact shown by vis
 }
 
 TEST_CASE("time in which vision does not see a robot is not covered") {
-  History history = seen_crossing();
+  MessageHistory history = seen_crossing();
   const Time begin = history.messages.front().at;
   history.each<msg::WorldState>([&](msg::WorldState& world, Time at) {
     if (at < begin + 2s || at >= begin + 3s) return;
@@ -135,7 +135,7 @@ TEST_CASE("time in which vision does not see a robot is not covered") {
 }
 
 TEST_CASE("without ground truth and vision nothing is judged") {
-  History history = seen_crossing();
+  MessageHistory history = seen_crossing();
   history.remove_if<msg::WorldState>([](const msg::WorldState&) { return true; });
   const AuditTotals totals = audit_of(history, kComplete);
   CHECK(totals.reference == AuditReference::kNone);

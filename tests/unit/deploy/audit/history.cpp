@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-void History::each_version(const std::function<void(msg::Version&)>& use) {
+void MessageHistory::each_version(const std::function<void(msg::Version&)>& use) {
   for (ReceivedMessage& received : messages) {
     if (auto* proposal = std::get_if<msg::Proposal>(&received.message)) {
       for (std::size_t i = 0; i < proposal->candidate_count(); ++i) use(proposal->candidates()[i]);
@@ -23,7 +23,7 @@ void History::each_version(const std::function<void(msg::Version&)>& use) {
   }
 }
 
-void History::push(RobotId pushed_robot, Time at) {
+void MessageHistory::push(RobotId pushed_robot, Time at) {
   each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time received_at) {
     if (received_at < at) return;
     for (msg::TrueRobotState& robot : truth.robots()) {
@@ -37,7 +37,7 @@ void History::push(RobotId pushed_robot, Time at) {
   messages.insert(place, {at, push});
 }
 
-void History::touch(RobotId first, std::optional<RobotId> second, Time at) {
+void MessageHistory::touch(RobotId first, std::optional<RobotId> second, Time at) {
   each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time received_at) {
     if (received_at < at) return;
     msg::ContactPair& contact = truth.recent_contacts()[truth.contacts() % msg::MAX_CONTACTS];
@@ -47,14 +47,14 @@ void History::touch(RobotId first, std::optional<RobotId> second, Time at) {
   });
 }
 
-void History::for_each_copy(RobotId robot, VersionNumber number,
-                            const std::function<void(msg::Version&)>& use) {
+void MessageHistory::for_each_copy(RobotId robot, VersionNumber number,
+                                   const std::function<void(msg::Version&)>& use) {
   each_version([&](msg::Version& version) {
     if (version.robot() == robot && version.version_number() == number) use(version);
   });
 }
 
-HistoryRecorder::HistoryRecorder(SimSystem& system, History& history) : bus_(system.network()) {
+HistoryRecorder::HistoryRecorder(SimSystem& system, MessageHistory& history) : bus_(system.network()) {
   bus_.become_observer();
   bus_.trust_first_senders();
   bus_.use_rules(SharedRules(history.scenario).fingerprint(), [](const TopicInfo&, const msg::Header&) {});
@@ -83,12 +83,13 @@ HistoryRecorder::HistoryRecorder(SimSystem& system, History& history) : bus_(sys
   }
 }
 
-History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration) {
+MessageHistory history_of(const Scenario& scenario, std::uint64_t seed, Duration duration) {
   return history_of(scenario, seed, [=](SimSystem& system) { system.run_for(duration); });
 }
 
-History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act) {
-  History history{scenario, {}};
+MessageHistory history_of(const Scenario& scenario, std::uint64_t seed,
+                          const std::function<void(SimSystem&)>& act) {
+  MessageHistory history{scenario, {}};
   SimSystem system(scenario, seed);
   const HistoryRecorder recorder(system, history);
   act(system);
@@ -119,11 +120,11 @@ struct Deliver {
 
 }  // namespace
 
-AuditTotals audit_of(const History& history, const AuditInput& input) {
+AuditTotals audit_of(const MessageHistory& history, const AuditInput& input) {
   return audit_of(history, input, nullptr);
 }
 
-AuditTotals audit_of(const History& history, const AuditInput& input,
+AuditTotals audit_of(const MessageHistory& history, const AuditInput& input,
                      const std::function<void(const Violation&)>& on_violation) {
   Auditor auditor(history.scenario, input);
   auditor.on_violation(on_violation);
@@ -139,9 +140,10 @@ AuditTotals audit_of(const Scenario& scenario, const std::vector<Delivery>& deli
   return auditor.totals();
 }
 
-History degraded(const History& history, std::uint64_t seed, double loss, Duration joined_after) {
+MessageHistory degraded(const MessageHistory& history, std::uint64_t seed, double loss,
+                        Duration joined_after) {
   Rng rng(seed);
-  History result{history.scenario, {}};
+  MessageHistory result{history.scenario, {}};
   const Time from = history.messages.front().at + joined_after;
   for (const ReceivedMessage& message : history.messages) {
     for (int copy = 0; copy < 2; ++copy) {

@@ -23,7 +23,7 @@ struct ReceivedMessage {
 };
 
 /// The messages of a run, to be audited with or without modifications.
-struct History {
+struct MessageHistory {
   Scenario scenario;
   std::vector<ReceivedMessage> messages;
 
@@ -56,20 +56,21 @@ struct History {
 class HistoryRecorder {
  public:
   /// `history` must outlive the recorder, and the recorder must not outlive the system.
-  HistoryRecorder(SimSystem& system, History& history);
+  HistoryRecorder(SimSystem& system, MessageHistory& history);
 
  private:
   SimBus bus_;
 };
 
 /// The messages of a simulated run of this duration; the same seed gives the same history.
-History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration);
+MessageHistory history_of(const Scenario& scenario, std::uint64_t seed, Duration duration);
 /// The messages of a run that `act` drives: it may give orders and kill processes.
-History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act);
+MessageHistory history_of(const Scenario& scenario, std::uint64_t seed,
+                          const std::function<void(SimSystem&)>& act);
 
-AuditTotals audit_of(const History& history, const AuditInput& input);
+AuditTotals audit_of(const MessageHistory& history, const AuditInput& input);
 /// Calls back for each violation in the history, including those beyond what the totals keep.
-AuditTotals audit_of(const History& history, const AuditInput& input,
+AuditTotals audit_of(const MessageHistory& history, const AuditInput& input,
                      const std::function<void(const Violation&)>& on_violation);
 
 /// One message of a history and the time at which it reaches the auditor.
@@ -82,7 +83,8 @@ AuditTotals audit_of(const Scenario& scenario, const std::vector<Delivery>& deli
 
 /// The history as received by an auditor that joins late, over a network that loses, duplicates and delays
 /// messages by up to 20 ms.
-History degraded(const History& history, std::uint64_t seed, double loss, Duration joined_after);
+MessageHistory degraded(const MessageHistory& history, std::uint64_t seed, double loss,
+                        Duration joined_after);
 
 /// The recorded violations, one per line.
 std::string lines(const AuditTotals& totals);

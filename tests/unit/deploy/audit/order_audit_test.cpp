@@ -32,7 +32,7 @@ void add(msg::OrderMemory& page, const msg::RememberedOrder& order) {
 }
 
 /// Adds these orders to all memories of the coordinator.
-void remember(History& h, const std::vector<msg::RememberedOrder>& orders) {
+void remember(MessageHistory& h, const std::vector<msg::RememberedOrder>& orders) {
   h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time) {
     if (page.process() < kCoordinator || page.page_count() == 0) return;
     for (const msg::RememberedOrder& order : orders) add(page, order);
@@ -40,7 +40,7 @@ void remember(History& h, const std::vector<msg::RememberedOrder>& orders) {
 }
 
 /// Adds an order that a client gives early in the run and that the coordinator confirms.
-void confirm(History& h, const msg::RememberedOrder& order) {
+void confirm(MessageHistory& h, const msg::RememberedOrder& order) {
   msg::CoordinatorState state;
   h.each<msg::CoordinatorState>([&](msg::CoordinatorState& s, Time) {
     if (state.header().sender() == 0) state = s;
@@ -60,7 +60,7 @@ void confirm(History& h, const msg::RememberedOrder& order) {
   h.messages.insert(place, {{at, sent}, {at, answer}});
 }
 
-std::uint64_t violations(AuditRule rule, const std::function<void(History&)>& tamper) {
+std::uint64_t violations(AuditRule rule, const std::function<void(MessageHistory&)>& tamper) {
   const AuditTotals totals = audit_tampered_crossing(tamper);
   UNSCOPED_INFO(lines(totals));
   return count(totals, rule);
@@ -74,7 +74,7 @@ TEST_CASE("a grant to a robot breaks a rule while the coordinator remembers a ho
     return remembered(msg::OrderKind::ORDER_RESUME, robot, client, number);
   };
   const auto held = [](std::vector<msg::RememberedOrder> orders) {
-    const AuditTotals totals = audit_tampered_crossing([&](History& h) { remember(h, orders); });
+    const AuditTotals totals = audit_tampered_crossing([&](MessageHistory& h) { remember(h, orders); });
     std::set<RobotId> robots;
     for (const Violation& violation : totals.first) {
       if (violation.rule == AuditRule::kHeld) robots.insert(violation.robot);
@@ -96,7 +96,7 @@ TEST_CASE("a grant to a robot breaks a rule while the coordinator remembers a ho
 
 TEST_CASE("a grant between two holds breaks no rule if the first hold was lifted") {
   std::uint64_t number = 1000;
-  CHECK(violations(AuditRule::kHeld, [&](History& h) {
+  CHECK(violations(AuditRule::kHeld, [&](MessageHistory& h) {
           h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time) {
             if (page.process() < kCoordinator || page.page_count() == 0) return;
             add(page, remembered(msg::OrderKind::ORDER_HOLD, kHeldRobot, kClient, ++number));
@@ -107,7 +107,7 @@ TEST_CASE("a grant between two holds breaks no rule if the first hold was lifted
 TEST_CASE("a grant before a hold breaks no rule if a clock set back makes the grant seem later") {
   // The hold begins after the last grant, while the clock is behind for a second.
   const auto held = [](Duration set_back) {
-    return violations(AuditRule::kHeld, [&](History& h) {
+    return violations(AuditRule::kHeld, [&](MessageHistory& h) {
       Time last_grant{};
       h.each<msg::Verdict>([&](msg::Verdict& verdict, Time at) {
         if (verdict.granted_version() != 0) last_grant = at;
@@ -134,7 +134,7 @@ TEST_CASE("a grant before a hold breaks no rule if a clock set back makes the gr
 
 TEST_CASE("a coordinator that forgets a confirmed order breaks a rule unless a later order replaces it") {
   const auto forgotten = [](const msg::RememberedOrder& order, std::vector<msg::RememberedOrder> kept) {
-    return violations(AuditRule::kForgottenOrder, [&](History& h) {
+    return violations(AuditRule::kForgottenOrder, [&](MessageHistory& h) {
       confirm(h, order);
       remember(h, kept);
     });
@@ -177,7 +177,7 @@ TEST_CASE("a coordinator that forgets a confirmed order breaks a rule unless a l
 }
 
 TEST_CASE("an order memory with a missing page is not judged") {
-  CHECK(violations(AuditRule::kForgottenOrder, [](History& h) {
+  CHECK(violations(AuditRule::kForgottenOrder, [](MessageHistory& h) {
           confirm(h, remembered(msg::OrderKind::ORDER_HOLD, 99, kClient, 1000));
           h.each<msg::OrderMemory>([](msg::OrderMemory& page, Time) {
             if (page.page_count() > 0) page.page_count(page.page_count() + 1);
@@ -186,8 +186,8 @@ TEST_CASE("an order memory with a missing page is not judged") {
 }
 
 /// Robot kHeldRobot is held and a robot is sent to a goal before the active of two coordinators dies.
-const History& taken_over() {
-  static const History history = [] {
+const MessageHistory& taken_over() {
+  static const MessageHistory history = [] {
     Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml");
     scenario.coordinators = 2;
     return history_of(scenario, 3, [&](SimSystem& system) {
@@ -209,8 +209,8 @@ const History& taken_over() {
   return history;
 }
 
-std::uint64_t violations_after_takeover(const std::function<void(History&)>& tamper) {
-  History history = taken_over();
+std::uint64_t violations_after_takeover(const std::function<void(MessageHistory&)>& tamper) {
+  MessageHistory history = taken_over();
   tamper(history);
   const AuditTotals totals = audit_of(history, kComplete);
   UNSCOPED_INFO(lines(totals));
@@ -218,7 +218,7 @@ std::uint64_t violations_after_takeover(const std::function<void(History&)>& tam
 }
 
 /// Removes the client's orders of this kind from all memories of coordinator 1.
-void forget(History& h, msg::OrderKind kind) {
+void forget(MessageHistory& h, msg::OrderKind kind) {
   h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time) {
     if (page.process() != kCoordinator + 1) return;
     const auto end = page.orders().begin() + page.order_count();
@@ -230,12 +230,12 @@ void forget(History& h, msg::OrderKind kind) {
 }
 
 TEST_CASE("a new coordinator that does not remember an order that an agent remembers breaks a rule") {
-  CHECK(violations_after_takeover([](History&) {}) == 0);
+  CHECK(violations_after_takeover([](MessageHistory&) {}) == 0);
   for (const auto kind : {msg::OrderKind::ORDER_HOLD, msg::OrderKind::ORDER_GO}) {
     CAPTURE(static_cast<int>(kind));
-    CHECK(violations_after_takeover([&](History& h) { forget(h, kind); }) == 1);
+    CHECK(violations_after_takeover([&](MessageHistory& h) { forget(h, kind); }) == 1);
     // The agents have restarted, so no agent is known to have announced the order to the coordinator.
-    CHECK(violations_after_takeover([&](History& h) {
+    CHECK(violations_after_takeover([&](MessageHistory& h) {
             forget(h, kind);
             h.remove_if<msg::OrderStatus>([](const msg::OrderStatus&) { return true; });
             h.remove_if<msg::OrderMemory>(

@@ -10,8 +10,8 @@ namespace sidestep {
 
 using namespace std::chrono_literals;
 
-const History& crossing() {
-  static const History history = [] {
+const MessageHistory& crossing() {
+  static const MessageHistory history = [] {
     Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml");
     return history_of(scenario, 3, 4s);
   }();
@@ -22,7 +22,7 @@ std::uint64_t count(const AuditTotals& totals, AuditRule rule) {
   return totals.by_rule[static_cast<std::size_t>(rule)];
 }
 
-Switch first_moving_switch(History& history) {
+Switch first_moving_switch(MessageHistory& history) {
   std::map<RobotId, std::vector<msg::Version>> executed;
   history.each<msg::Feedback>([&](msg::Feedback& f, Time) {
     auto& list = executed[f.robot()];
@@ -35,13 +35,13 @@ Switch first_moving_switch(History& history) {
   return {2, to.version_number(), list[49].version_number(), to.start_ns(), to};
 }
 
-AuditTotals audit_tampered_crossing(const std::function<void(History&)>& tamper) {
-  History history = crossing();
+AuditTotals audit_tampered_crossing(const std::function<void(MessageHistory&)>& tamper) {
+  MessageHistory history = crossing();
   tamper(history);
   return audit_of(history, kComplete);
 }
 
-void require_violation(AuditRule rule, const std::function<void(History&)>& tamper) {
+void require_violation(AuditRule rule, const std::function<void(MessageHistory&)>& tamper) {
   const AuditTotals totals = audit_tampered_crossing(tamper);
   INFO(rule_info_of(rule).name << " expected; found:\n" << lines(totals));
   REQUIRE(count(totals, rule) > 0);

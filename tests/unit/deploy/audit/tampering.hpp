@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// An unmodified history of crossing.yaml, identical for each call.
-const History& crossing();
+const MessageHistory& crossing();
 
 inline constexpr AuditInput kComplete{true, {}};
 
@@ -22,12 +22,12 @@ struct Switch {
   std::int64_t start_ns;
   msg::Version version;
 };
-Switch first_moving_switch(History& history);
+Switch first_moving_switch(MessageHistory& history);
 
 /// The audit of a copy of crossing() after `tamper` has modified it.
-AuditTotals audit_tampered_crossing(const std::function<void(History&)>& tamper);
+AuditTotals audit_tampered_crossing(const std::function<void(MessageHistory&)>& tamper);
 
 /// Fails the test unless the audit of the modified history reports a violation of the rule.
-void require_violation(AuditRule rule, const std::function<void(History&)>& tamper);
+void require_violation(AuditRule rule, const std::function<void(MessageHistory&)>& tamper);
 
 }  // namespace sidestep

@@ -17,9 +17,9 @@ using namespace std::chrono_literals;
 /// All messages of a trial of the random campaign, with faults such as deaths, partitions, second agents,
 /// pushes, lifted robots and clocks that are set. nullopt if the campaign does not judge the trial by its
 /// audit because some process believed a second simulator.
-std::optional<History> history_of_trial(std::uint64_t seed) {
+std::optional<MessageHistory> history_of_trial(std::uint64_t seed) {
   const Trial trial = sample_trial(seed, 12s, std::nullopt);
-  History history{trial.scenario, {}};
+  MessageHistory history{trial.scenario, {}};
   std::unique_ptr<HistoryRecorder> recorder;
   TrialHooks hooks;
   hooks.on_start = [&](SimSystem& system) { recorder = std::make_unique<HistoryRecorder>(system, history); };
@@ -38,10 +38,10 @@ Counts audit_thinned(std::uint64_t first, std::uint64_t count, std::uint64_t los
   Counts counts;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     CAPTURE(seed);
-    const std::optional<History> found = history_of_trial(seed);
+    const std::optional<MessageHistory> found = history_of_trial(seed);
     if (!found) continue;
     ++counts.runs;
-    const History& history = *found;
+    const MessageHistory& history = *found;
     const AuditTotals whole = audit_of(history, kComplete);
     INFO("whole: " << verdict_line(whole) << "\n" << lines(whole));
     CHECK(whole.verdict() == AuditVerdict::kPassed);

@@ -36,7 +36,7 @@ class Stream {
 
 class Thinning {
  public:
-  Thinning(const History& history, std::uint64_t seed) : rng_(seed) {
+  Thinning(const MessageHistory& history, std::uint64_t seed) : rng_(seed) {
     loss_.fill(rng_.uniform(0.01, 0.7));
     result_.losses = fmt::format("{:.0f} %", 100 * loss_.front());
     if (rng_.chance(0.4)) lose_by_topic();
@@ -56,7 +56,7 @@ class Thinning {
     if (rng_.chance(0.5)) delay();
   }
 
-  DegradedHistory of(const History& history) && {
+  DegradedHistory of(const MessageHistory& history) && {
     for (const ReceivedMessage& received : history.messages) {
       if (is_lost(received)) continue;
       const double delay_s = delay_s_[received.message.index()] + jitter_s_ * rng_.uniform();
@@ -134,7 +134,7 @@ class Thinning {
 
 }  // namespace
 
-DegradedHistory thinned(const History& history, std::uint64_t seed) {
+DegradedHistory thinned(const MessageHistory& history, std::uint64_t seed) {
   return Thinning(history, seed).of(history);
 }
 

@@ -18,6 +18,6 @@ struct DegradedHistory {
 /// Loses messages of a history for a random mixture of causes: independently, in bursts, by topic, sender or
 /// robot, all messages for whole seconds, or all before a late start. Also delays messages so that topics
 /// overtake each other. Without ground truth, operators' announcements of disturbances are not lost.
-DegradedHistory thinned(const History& history, std::uint64_t seed);
+DegradedHistory thinned(const MessageHistory& history, std::uint64_t seed);
 
 }  // namespace sidestep

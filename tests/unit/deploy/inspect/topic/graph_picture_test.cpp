@@ -53,9 +53,9 @@ std::vector<DiscoveredEndpoint> two_teams() {
 }
 
 TEST_CASE("processes of one kind are one group with their number, in the order of the system") {
-  const std::vector<ProcessGroup> groups = groups_of(graph_of(two_teams()));
+  const std::vector<GraphGroup> groups = groups_of(graph_of(two_teams()));
   std::vector<std::string> titles, members;
-  for (const ProcessGroup& group : groups) {
+  for (const GraphGroup& group : groups) {
     titles.push_back(title_of(group));
     members.push_back(members_text(group));
   }
@@ -69,11 +69,11 @@ TEST_CASE("processes of one kind are one group with their number, in the order o
 }
 
 TEST_CASE("processes of others that differ in a number are a group, and hosts keep theirs apart") {
-  const std::vector<ProcessGroup> groups = groups_of(
+  const std::vector<GraphGroup> groups = groups_of(
       graph_of({endpoint("patrol-2", "a", true), endpoint("patrol-10", "a", true),
                 endpoint("patrol-1", "a", true, "bb"), endpoint("-3", "a", true), endpoint("", "a", true)}));
   std::vector<std::string> titles;
-  for (const ProcessGroup& group : groups) titles.push_back(title_of(group));
+  for (const GraphGroup& group : groups) titles.push_back(title_of(group));
   REQUIRE(titles.size() == 4);
   CHECK(titles[0] == "-3");
   CHECK(titles[1] == "01.0f.aa.01.17.00");  // without a name

@@ -15,10 +15,10 @@ namespace sidestep {
 
 /// The images of a scenario's cameras, for viewers. Because images are large (about 100 MB/s), they are
 /// received only while a viewer asks for them.
-class CameraView {
+class CameraImages {
  public:
   /// The scenario must outlive this object.
-  CameraView(const Scenario& scenario, const DdsSettings& dds);
+  CameraImages(const Scenario& scenario, const DdsSettings& dds);
 
   /// The latest image of a camera as JPEG, with crosses where vision sees the robots. nullopt if there is no
   /// image yet or no such camera.

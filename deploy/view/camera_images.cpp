@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/view/camera_view.hpp"
+#include "deploy/view/camera_images.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -17,20 +17,20 @@ constexpr Duration kPatience = std::chrono::seconds(5);
 
 }  // namespace
 
-CameraView::CameraView(const Scenario& scenario, const DdsSettings& dds) : dds_(dds) {
+CameraImages::CameraImages(const Scenario& scenario, const DdsSettings& dds) : dds_(dds) {
   dds_.participant += "-images";
   if (!scenario.vision.images) return;
   for (const CameraModel& model : camera_grid(scenario)) cameras_.push_back({model, std::nullopt});
 }
 
-void CameraView::poll(Time now) {
+void CameraImages::poll(Time now) {
   if (!bus_) return;
   if (now - asked_at_ <= kPatience) return bus_->run_until(bus_->now());
   bus_.reset();
   for (Camera& camera : cameras_) camera.image.reset();
 }
 
-std::optional<std::string> CameraView::jpeg(std::size_t camera, const FloorState& floor, Time now) {
+std::optional<std::string> CameraImages::jpeg(std::size_t camera, const FloorState& floor, Time now) {
   if (camera >= cameras_.size()) return std::nullopt;
   asked_at_ = now;
   if (!bus_) {
