@@ -38,7 +38,7 @@ class Browser {
   /// whether it became true.
   bool wait_until(
       const std::string& expression, const std::function<void()>& meanwhile = [] {});
-  /// Script errors and loading errors that the page has logged.
+  /// Script errors and loading errors that the page has logged; not advice to tests that often read pixels.
   std::string logged_errors();
   void save_screenshot(const std::string& path);
 

@@ -4,8 +4,8 @@
 /** Names an element for people. */
 const nameOf = (node) => node.id || node.getAttribute("aria-label") || node.textContent.trim().slice(0, 40) || node.tagName;
 
-/** Whether an element takes room on the page. */
-const isDrawn = (node) => node.getClientRects().length > 0 && getComputedStyle(node).visibility !== "hidden";
+/** Whether an element is drawn; what a closed menu folds away is not. */
+const isDrawn = (node) => node.getClientRects().length > 0 && node.checkVisibility({visibilityProperty: true});
 
 /** The colour of a CSS text as red, green, blue and opacity. */
 function coloursOf(text) {
