@@ -58,7 +58,12 @@ msg::Order order_as(std::uint32_t sender, const LaunchedRun& run) {
 /// Precondition: all robots are at rest.
 bool attack(LaunchedRun& run, Attacker& attacker, Duration duration = seconds(3),
             std::uint32_t sender = static_cast<std::uint32_t>(Sender::kOperator)) {
-  REQUIRE(run.wait_until([&] { return run.max_speed_mps() < kMoving_mps / 2; }));
+  // A robot that has not arrived yet may stop for a moment.
+  Time moved_at = run.bus().now();
+  REQUIRE(run.wait_until([&] {
+    if (run.max_speed_mps() > kMoving_mps / 2) moved_at = run.bus().now();
+    return run.bus().now() - moved_at > seconds(1);
+  }));
   const msg::Order order = order_as(sender, run);
   const Time begin = run.bus().now();
   bool has_moved = false;
