@@ -22,7 +22,8 @@ struct CalibrateOptions {
 };
 
 void write_out(const std::string& text, const std::string& path) {
-  path.empty() ? write_output(text) : write_file(path, text);
+  if (path.empty()) return write_output(text);
+  write_file(path, text);
 }
 
 int run_colours(const CalibrateOptions& options) {

@@ -40,10 +40,19 @@ std::optional<double> reported_number(const Json& value) {
   return number;
 }
 
+double required_number(const Json& report, const char* key) {
+  const auto number = reported_number(report.at(key));
+  if (!number) throw std::invalid_argument(fmt::format("is a damaged report: {} is not a number", key));
+  return *number;
+}
+
 Arrivals reported_arrivals(const Json& report) {
   const auto without_goal = report.find("without_goal");
-  return {number_of_robots(report.at("robots")), number_of_robots(report.at("arrived")),
-          without_goal == report.end() ? 0 : number_of_robots(*without_goal)};
+  const Arrivals arrivals{number_of_robots(report.at("robots")), number_of_robots(report.at("arrived")),
+                          without_goal == report.end() ? 0 : number_of_robots(*without_goal)};
+  if (arrivals.with_goal() < 0)
+    throw std::invalid_argument("is a damaged report: more robots lack a goal than there are");
+  return arrivals;
 }
 
 ExcludedCounts excluded_contacts(const Json& report) {

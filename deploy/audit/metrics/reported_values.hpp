@@ -14,6 +14,9 @@ namespace sidestep {
 /// nullopt: the value is no number. A number that no run can have is damage.
 [[nodiscard]] std::optional<double> reported_number(const nlohmann::ordered_json& value);
 
+/// A number that every report has.
+[[nodiscard]] double required_number(const nlohmann::ordered_json& report, const char* key);
+
 [[nodiscard]] Arrivals reported_arrivals(const nlohmann::ordered_json& report);
 
 /// Contacts or crashes that the verdict does not count.

@@ -60,24 +60,22 @@ std::string judged_figure(const std::string& name, double count, const ExcludedC
 }
 
 std::string contacts_figure(const Json& report) {
-  return judged_figure("contacts", reported_number(report.at("contacts")).value_or(0),
-                       excluded_contacts(report));
+  return judged_figure("contacts", required_number(report, "contacts"), excluded_contacts(report));
 }
 
 /// Empty if there was no crash.
 std::string crashes_figure(const Json& report) {
   if (report.at("crashes") == 0) return {};
-  return judged_figure("crashes while moving", reported_number(report.at("crashes_while_moving")).value_or(0),
+  return judged_figure("crashes while moving", required_number(report, "crashes_while_moving"),
                        excluded_crashes(report));
 }
 
 std::string audit_figures(const Json& audit) {
   if (!audit.is_object()) return figure("audit", "not audited", "unknown");
-  const auto share = number_at(audit.at("coverage"), "share"),
-             minimum = number_at(audit.at("coverage"), "minimum");
+  const double share = required_number(audit.at("coverage"), "share"),
+               minimum = required_number(audit.at("coverage"), "minimum");
   return alarming("rules broken", audit.at("violations")) +
-         figure("audit covered", with_unit(share, 100, 1, "%"),
-                share.value_or(0) >= minimum.value_or(0) ? "good" : "unknown");
+         figure("audit covered", with_unit(share, 100, 1, "%"), share >= minimum ? "good" : "unknown");
 }
 
 /// The robot's speed from the begin of the picture on; before that, no robot may move.

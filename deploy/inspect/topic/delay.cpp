@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <atomic>
 #include <fmt/core.h>
 
 #include "common/file/console.hpp"
-#include "common/messaging/dds/listener.hpp"
+#include "common/messaging/dds/bus.hpp"
 #include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
@@ -46,16 +45,10 @@ int measure_live(const TopicOptions& options) {
     bus.stop();
   });
   stop_without_reader(bus);
-  const Duration discovery = from_seconds(options.discovery_s);
   const Time end = options.seconds > 0 ? bus.now() + from_seconds(options.seconds) : Time::max();
-  bus.run_until(std::min(end, bus.now() + discovery));
-  if (meter.is_empty() && !is_stopped && !is_output_abandoned()) {
-    const DdsListener listener(options.dds);
-    bus.run_until(bus.now() + discovery);
-    if (meter.is_empty() && !is_stopped)
-      fmt::print(stderr, "{}{}\n", silence_text(options.topic, options.dds.domain, listener.endpoints(), 0),
-                 bus.now() < end ? "; waiting" : "");
-  }
+  const auto is_silent = [&] { return meter.is_empty() && !is_stopped && !is_output_abandoned(); };
+  explain_silence(
+      bus, options, is_silent, [] { return 0; }, end);
   bus.run_until(end);
   if (meter.is_empty()) return is_output_abandoned() ? 0 : kExitFailure;
   print_output("{}", meter.table());

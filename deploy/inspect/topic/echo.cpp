@@ -77,16 +77,6 @@ int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
   return is_decodable ? 0 : kExitFailure;
 }
 
-/// Says why nothing was printed, which takes the time of discovery. Printing goes on in the meantime.
-void explain_silence(DdsBus& bus, const TopicOptions& options, const MessagePrinter& printer,
-                     const std::atomic<bool>& is_stopped) {
-  const DdsListener listener(options.dds);
-  bus.run_until(bus.now() + from_seconds(options.discovery_s));
-  if (printer.printed() == 0 && !is_stopped)
-    fmt::print(stderr, "{}; waiting\n",
-               silence_text(options.topic, options.dds.domain, listener.endpoints(), printer.received()));
-}
-
 }  // namespace
 
 int echo_topic(const TopicOptions& options) {
@@ -101,9 +91,9 @@ int echo_topic(const TopicOptions& options) {
   });
   if (!print_channel(bus, options.topic, printer, [&bus] { bus.stop(); })) return kExitFailure;
   stop_without_reader(bus);
-  bus.run_until(bus.now() + from_seconds(options.discovery_s));
-  if (printer.printed() == 0 && !is_stopped && !is_output_abandoned())
-    explain_silence(bus, options, printer, is_stopped);
+  const auto is_silent = [&] { return printer.printed() == 0 && !is_stopped && !is_output_abandoned(); };
+  explain_silence(
+      bus, options, is_silent, [&] { return printer.received(); }, Time::max());
   bus.run();
   return 0;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/inspect/topic/silence.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
@@ -48,6 +49,19 @@ std::string recorded_silence_text(const std::string& topic, const std::string& r
   std::vector<std::string> channels;
   for (const auto& [channel, content] : bag_info(recording_file).channels) channels.push_back(channel);
   return silence_text(topic, recording_file, channels, received);
+}
+
+void explain_silence(DdsBus& bus, const TopicOptions& options, const std::function<bool()>& is_silent,
+                     const std::function<std::uint64_t()>& received, Time end) {
+  const Duration discovery = from_seconds(options.discovery_s);
+  bus.run_until(std::min(end, bus.now() + discovery));
+  if (!is_silent()) return;
+  const DdsListener listener(options.dds);
+  bus.run_until(bus.now() + discovery);
+  if (is_silent())
+    fmt::print(stderr, "{}{}\n",
+               silence_text(options.topic, options.dds.domain, listener.endpoints(), received()),
+               bus.now() < end ? "; waiting" : "");
 }
 
 std::string empty_domain_text(int domain) {

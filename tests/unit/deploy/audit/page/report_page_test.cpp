@@ -30,6 +30,18 @@ TEST_CASE("the page of a run has its verdict, figures, paths, speeds, arrivals, 
   CHECK_THAT(page, ContainsSubstring(">0.75 s, 22 MB</text>"));
 }
 
+TEST_CASE("figures of a damaged report do not count as good") {
+  const auto [path, value] = GENERATE(table<std::string, std::string>({{"/contacts", "null"},
+                                                                       {"/contacts", "\"0\""},
+                                                                       {"/without_goal", "3"},
+                                                                       {"/audit/coverage/share", "null"},
+                                                                       {"/audit/coverage/minimum", "null"}}));
+  CAPTURE(path, value);
+  auto report = json_of(example_report());
+  report[nlohmann::ordered_json::json_pointer(path)] = nlohmann::ordered_json::parse(value);
+  CHECK_THROWS_WITH(report_page(report), ContainsSubstring("is a damaged report"));
+}
+
 TEST_CASE("the page says what counts as a contact and, if there are any, as a crash") {
   Report report = example_report();
   CHECK_THAT(page_of(report),
