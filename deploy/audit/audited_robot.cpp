@@ -70,12 +70,12 @@ KnownVersion* AuditedRobot::find(VersionNumber number) {
 
 KnownVersion& AuditedRobot::find_or_insert(VersionNumber number) {
   if (KnownVersion* known = find(number)) return *known;
+  const bool may_be_incomplete = has_evicted_ && number <= max_evicted_version;
   if (versions.size() >= kMaxVersions) {
     const auto is_excluded = [](const KnownVersion& known) { return known.exclusion != Exclusion::kNone; };
     const auto excluded = std::ranges::find_if(versions, is_excluded);
     const auto evicted = excluded == versions.end() ? versions.begin() : excluded;
-    max_evicted_version = std::max(max_evicted_version, evicted->number);
-    count_forgotten(*evicted);
+    note_evicted(*evicted);
     if (evicted - versions.begin() < static_cast<std::ptrdiff_t>(first_recent)) --first_recent;
     versions.erase(evicted);
   }
@@ -84,7 +84,13 @@ KnownVersion& AuditedRobot::find_or_insert(VersionNumber number) {
   place = versions.emplace(place);
   first_recent = std::min(first_recent, static_cast<std::size_t>(place - versions.begin()));
   place->number = number;
+  place->may_be_incomplete = may_be_incomplete;
   return *place;
+}
+
+bool AuditedRobot::was_evicted(VersionNumber number) const {
+  const KnownVersion* known = find(number);
+  return known ? known->may_be_incomplete : number <= max_evicted_version;
 }
 
 ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number) {
@@ -135,7 +141,9 @@ void AuditedRobot::ExecutedVersions::add(const KnownVersion& version, std::int64
   traced += version.is_traced();
 }
 
-void AuditedRobot::count_forgotten(const KnownVersion& version) {
+void AuditedRobot::note_evicted(const KnownVersion& version) {
+  has_evicted_ = true;
+  max_evicted_version = std::max(max_evicted_version, version.number);
   forgotten_.add(version, traceable_from_ns, kNever);
   forgotten_first_.add(version, traceable_from_ns - kMaxLead_ns, traceable_from_ns);
 }
@@ -157,8 +165,7 @@ void AuditedRobot::forget(std::int64_t before_ns) {
   if (versions.empty() || versions.front().excluded_ns >= before_ns) return;
   std::erase_if(versions, [&](const KnownVersion& known) {
     if (known.excluded_ns >= before_ns) return false;
-    max_evicted_version = std::max(max_evicted_version, known.number);
-    count_forgotten(known);
+    note_evicted(known);
     return true;
   });
   first_recent = 0;

@@ -70,6 +70,8 @@ struct KnownVersion {
   bool is_reported_unsent = false;  ///< ensures that a violation is reported only once
   bool is_content_checked = false;  ///< its content was checked, also against its base
   bool is_pair_checked = false;     ///< checked against the other robots' versions in the ledger
+  /// An earlier record of this number may have been evicted, and with it grants and registrations.
+  bool may_be_incomplete = false;
   msg::Version version;
 
   /// Whether the version was granted or registered in the epoch.
@@ -198,8 +200,9 @@ class AuditedRobot {
   const KnownVersion* find(VersionNumber number) const;
   /// Like find(), for a version that was recently at this index.
   const KnownVersion* find_near(std::size_t index, VersionNumber number) const;
-  /// Whether the version is unknown and may have been evicted.
-  bool was_evicted(VersionNumber number) const { return number <= max_evicted_version && !find(number); }
+  /// Whether a record of the version may have been evicted, so that nothing proves that the version was never
+  /// granted or registered. A repeated registration or command may have inserted a new record since then.
+  bool was_evicted(VersionNumber number) const;
   /// Whether all versions that the robot executed between two versions are known; `from` may equal `to`.
   bool continues(VersionNumber from, VersionNumber to) const;
   /// The version that was executed at this time by the robot's clock: `latest` or an earlier one; nullptr:
@@ -235,8 +238,10 @@ class AuditedRobot {
   void forget_times();
 
  private:
-  void count_forgotten(const KnownVersion& version);
+  /// Remembers what is needed of a version that is about to be evicted.
+  void note_evicted(const KnownVersion& version);
 
+  bool has_evicted_ = false;                      ///< distinguishes an evicted version 0 from none
   ExecutedVersions forgotten_, forgotten_first_;  ///< counts of versions that are no longer in `versions`
 };
 

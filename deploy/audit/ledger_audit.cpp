@@ -34,8 +34,10 @@ void LedgerAudit::check_entry(AuditedRobot& robot, const msg::Version& version, 
                               const Reception& reception) {
   const KnownVersion* known = robot.find(version.version_number());
   // A coordinator that receives no reports keeps versions that the auditor evicted long ago.
-  if (robot.was_evicted(version.version_number())) return;
-  const bool stays_admissible = known && (known->may_be_in(page.epoch()) || known->is_own_stop);
+  const bool was_evicted = robot.was_evicted(version.version_number());
+  if (was_evicted && !known) return;
+  const bool stays_admissible =
+      was_evicted || (known && (known->may_be_in(page.epoch()) || known->is_own_stop));
   const bool may_be_forgotten = page.epoch() <= robot.forgotten_until_epoch;
   if (run_.is_complete() && epochs_.is_from_granter(page) && !stays_admissible && !may_be_forgotten) {
     findings_.report(AuditRule::kLedgerPage, robot.id,
