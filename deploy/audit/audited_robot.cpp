@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace sidestep {
 namespace {
@@ -187,14 +188,18 @@ ProposalRecord& AuditedRobot::add_proposal() {
 }
 
 void AuditedRobot::reset() {
-  const RobotId kept_id = id;
-  const Epoch last_epoch = std::max(forgotten_until_epoch, registered ? registered->epoch : 0);
-  const ExecutedVersions kept_versions = executed_versions(), kept_first = first_executed_versions();
-  *this = AuditedRobot();
-  id = kept_id;
-  forgotten_until_epoch = last_epoch;
-  forgotten_ = kept_versions;
-  forgotten_first_ = kept_first;
+  AuditedRobot kept;
+  kept.id = id;
+  kept.registered_in = registered_in;
+  kept.attested_until = attested_until;
+  kept.attested_in = attested_in;
+  kept.forgotten_until_epoch = std::max(forgotten_until_epoch, registered ? registered->epoch : 0);
+  kept.max_evicted_proposal = max_evicted_proposal;
+  for (const ProposalRecord& record : proposals)
+    kept.max_evicted_proposal = std::max(kept.max_evicted_proposal, record.number);
+  kept.forgotten_ = executed_versions();
+  kept.forgotten_first_ = first_executed_versions();
+  *this = std::move(kept);
 }
 
 void AuditedRobot::forget_times() {

@@ -232,7 +232,8 @@ class AuditedRobot {
   void make_recent(VersionNumber number);
   /// A slot for one more proposal. Evicts the oldest proposal if there is no room.
   ProposalRecord& add_proposal();
-  /// Forgets everything except the id and the counters, because a new simulator starts with a new floor.
+  /// Forgets the former floor's motions, because a new simulator starts with a new floor. What coordinators
+  /// still rely on is kept: registrations, attestations, and which proposals may be answered.
   void reset();
   /// Forgets the times of reports and of the observation, because the robot's clock was set back.
   void forget_times();

@@ -319,7 +319,7 @@ TEST_CASE("after a robot's clock is set back, all times of the old clock are for
   for (const KnownVersion& known : robot.versions) CHECK(known.executed_until_ns == kAlways);
 }
 
-TEST_CASE("after reset() only a robot's id and the highest epoch of its former floor are known") {
+TEST_CASE("after reset() a robot's former motions and proposals are forgotten, but not its last epoch") {
   AuditedRobot robot;
   robot.id = 7;
   robot.registered.emplace().epoch = 5;
@@ -331,6 +331,7 @@ TEST_CASE("after reset() only a robot's id and the highest epoch of its former f
   CHECK(robot.forgotten_until_epoch == 5);
   CHECK(robot.versions.empty());
   CHECK(robot.find_proposal(3) == nullptr);
+  CHECK(robot.max_evicted_proposal == 3);
   CHECK_FALSE(robot.last_report);
   CHECK_FALSE(robot.registered);
   robot.registered.emplace().epoch = 4;
