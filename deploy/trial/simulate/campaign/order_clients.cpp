@@ -118,6 +118,9 @@ bool OrderClients::is_disturbed(const msg::TrueRobotState& body, const msg::Grou
 }
 
 void OrderClients::on_truth(const msg::GroundTruth& truth) {
+  // The truth may be that of the second simulator, whose robots are elsewhere, and robots of the first one
+  // may follow the second one's fixes. The system hears every truth before this observer.
+  if (system_.was_second_simulator_accepted()) return;
   const Time now = time_from_ns(truth.valid_at_ns());
   std::map<RobotId, Vec2> rest_m;
   for (const msg::TrueRobotState& body : truth.robots()) {

@@ -16,7 +16,8 @@ namespace sidestep {
 
 /// The clients of a trial, each a separate process, and the judge of their orders. The judge knows when each
 /// hold was confirmed, when any client lifted it, and where robots really are. It checks that no robot moves
-/// while it is held, and that no confirmed order is forgotten.
+/// while it is held, and that no confirmed order is forgotten. Like the audit, it does not judge motions once
+/// a process has accepted a second simulator (SimSystem::was_second_simulator_accepted()).
 class OrderClients {
  public:
   /// How long a robot may still move after a hold is confirmed, because it completes earlier grants: the

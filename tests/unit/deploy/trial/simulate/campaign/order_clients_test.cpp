@@ -91,6 +91,28 @@ TEST_CASE("a trial does not fail while a held robot without power coasts to rest
   CHECK(trial.clients.failures().empty());
 }
 
+TEST_CASE("the positions of robots of a second simulator do not fail a trial, and earlier failures count") {
+  const bool has_moved = GENERATE(false, true);
+  CAPTURE(has_moved);
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_GO, 0, kOther, {{{-1, -1.5}}});  // away from where simulators begin
+  trial.system.run_for(5s);
+  trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);
+  trial.system.run_for(4s);
+  if (has_moved) {
+    trial.resume_unknown_to_judge();
+    trial.give(msg::OrderKind::ORDER_GO, 0, kOther, {{{1, 1}}});
+    trial.system.run_for(6s);
+  }
+  const std::vector<std::string> failures = trial.clients.failures();
+  CHECK(failures.empty() != has_moved);
+  trial.system.pause("simulator", 3s, 1000);
+  trial.system.restart(second_process("simulator"));
+  trial.system.run_for(2s);
+  REQUIRE(trial.system.was_second_simulator_accepted());
+  CHECK(trial.clients.failures() == failures);
+}
+
 TEST_CASE("a trial fails while a coordinator has forgotten an order that its client has not repeated") {
   Trial trial;
   trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1}}});
