@@ -46,11 +46,12 @@ const char* name_of(AuditReference reference) {
 }
 
 AuditVerdict AuditTotals::verdict() const {
-  if (violations > 0) return AuditVerdict::kFailed;
+  if (has_failed()) return AuditVerdict::kFailed;
   return shortfall(*this).empty() ? AuditVerdict::kPassed : AuditVerdict::kNotJudged;
 }
 
 std::string shortfall(const AuditTotals& totals) {
+  if (!totals.exemption.empty()) return totals.exemption;
   if (totals.received == 0 && totals.refused > 0)
     return fmt::format("all {} messages come from processes with different rules", totals.refused);
   if (totals.received == 0) return "no messages were received";

@@ -13,7 +13,8 @@
 
 namespace sidestep {
 
-/// kNotJudged means that nothing wrong was found, but the audit covered too little to declare the run passed.
+/// kNotJudged means that nothing wrong was found, but the audit covered too little to declare the run passed,
+/// or that its findings do not count.
 enum class AuditVerdict : std::uint8_t { kPassed, kFailed, kNotJudged };
 
 /// The exit code of a run that was not judged.
@@ -56,7 +57,9 @@ struct AuditTotals {
   /// may have been granted before it joined; otherwise 0.
   std::uint64_t untraced_first_versions = 0;
   bool lacks_ledger = false;  ///< robots could move, but no page of the ledger was received
-  bool is_cut_off = false;    ///< the messages come from a recording that lacks an unknown part of the run
+  /// Why violations do not count, e.g. because a process accepted a second simulator; empty: they count.
+  std::string exemption;
+  bool is_cut_off = false;  ///< the messages come from a recording that lacks an unknown part of the run
   /// Duration of the part of the run in which a silent robot lowers the coverage, see
   /// RunCoverage::begin_run().
   double run_s = 0;
@@ -75,11 +78,13 @@ struct AuditTotals {
   double pair_s = 0;                        ///< observed time, summed over all pairs of robots on the floor
   double excused_pair_s = 0;                ///< the part of pair_s in which a contact would have been excused
 
+  bool has_failed() const { return violations > 0 && exemption.empty(); }
   double excused_time_share() const { return pair_s > 0 ? excused_pair_s / pair_s : 0; }
   AuditVerdict verdict() const;
 };
 
-/// Why the audit covered too little, in one line; empty if it covered enough.
+/// Why the audit does not judge the run unless it has failed, in one line: the exemption, or what the audit
+/// did not cover. Empty if it judges the run.
 [[nodiscard]] std::string shortfall(const AuditTotals& totals);
 /// The verdict and its reason: "passed (coverage 99.7 %)" or "not judged: 34.5 % of the messages were
 /// missed".

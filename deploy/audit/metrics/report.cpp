@@ -197,7 +197,7 @@ std::string Report::failure_reason() const {
   if (const auto crashes_moving = unexcused_crashes(); crashes_moving > 0)
     add(fmt::format("{} crashes of moving robots with opponents or people", crashes_moving));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
-  if (audit && audit->violations > 0) {
+  if (audit && audit->has_failed()) {
     add(fmt::format("{} audit violations, the first of rule {}", audit->violations,
                     rule_info_of(audit->first.front().rule).name));
   }

@@ -225,6 +225,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
     *report = final_report;
     report->trace = system.metrics().floor_trace();
     report->must_arrive = false;
+    if (!result.is_audited) report->audit->exemption = "a process accepted a second simulator";
     report->abort_reason = fmt::format("{}", fmt::join(result.failures, "; "));
   }
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -214,6 +214,25 @@ TEST_CASE("audit violations fail a run and are included in its report") {
              ContainsSubstring("late-switch (firmware, S-05): robot 3 version 17: is being executed"));
 }
 
+TEST_CASE("violations of an audit that does not count do not fail a run, which is then not judged") {
+  Report report = example();
+  report.arrived = report.robots;
+  report.audit = AuditTotals{};
+  report.audit->violations = 1;
+  report.audit->first.emplace_back();
+  report.audit->exemption = "a process accepted a second simulator";
+  const std::string reason = "not judged: a process accepted a second simulator";
+  CHECK(report.failure_reason().empty());
+  CHECK(report.verdict() == AuditVerdict::kNotJudged);
+  const auto json = parse_json(to_json(report));
+  CHECK(json["failure"] == reason);
+  CHECK(json["audit"]["verdict"] == "not judged");
+  CHECK(json["audit"]["violations"] == 1);
+  CHECK_THAT(summary(report), ContainsSubstring("audit: " + reason) && EndsWith("\n" + reason + "\n"));
+  report.contacts = 1;
+  CHECK(report.failure_reason() == "1 contacts");
+}
+
 /// The audit of a run in which every message was heard.
 AuditTotals covered() {
   AuditTotals totals;

@@ -174,6 +174,21 @@ TEST_CASE("the same seed gives the same trial result and a different seed a diff
   CHECK(outcome(17) != outcome(18));
 }
 
+TEST_CASE("the report of a trial in which a process accepted a second simulator counts no audit violations") {
+  const std::string second = second_process("simulator");
+  const Scenario scenario = pair_of_robots();
+  Trial trial{1, scenario, plan_of(scenario, {}, 6s), 10s};
+  trial.plan.hosts.push_back({second});
+  const bool is_first_silent = GENERATE(false, true);
+  CAPTURE(is_first_silent);
+  if (is_first_silent) trial.plan.faults.push_back({1s, Pause{{"simulator"}, 1000}, 3s});
+  trial.plan.faults.push_back({2s, Start{second}});
+  Report report;
+  CHECK(run_trial(trial, &report).is_audited == !is_first_silent);
+  CHECK((report.audit->exemption == "a process accepted a second simulator") == is_first_silent);
+  if (is_first_silent) CHECK(report.audit->verdict() == AuditVerdict::kNotJudged);
+}
+
 TEST_CASE("a system that never starts to drive is reported as stuck") {
   const Scenario scenario = pair_of_robots();
   Trial trial{1, scenario, plan_of(scenario, {{0s, Kill{"coordinator"}}}, 1s), 10s};
