@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <iterator>
 
+#include "common/protocol/client_text.hpp"
 #include "deploy/audit/disturbances.hpp"
 #include "deploy/trial/simulate/campaign/forger.hpp"
 #include "deploy/trial/simulate/campaign/rule_mutations.hpp"
@@ -65,23 +66,24 @@ std::string_view to_text(RobotEnd end) {
 
 std::string to_text(const Order& order) {
   const std::string robot = order.robot == kAllRobots ? "all robots" : fmt::format("robot {}", order.robot);
+  const std::string client = client_phrase(order.client, order.client_name);
   switch (order.kind) {
     case msg::OrderKind::ORDER_GO:
-      return fmt::format("client {} sends {} to ({:.3f}, {:.3f}) m", order.client, robot,
+      return fmt::format("{} sends {} to ({:.3f}, {:.3f}) m", client, robot,
                          order.goals.front().position_m.x(), order.goals.front().position_m.y());
     case msg::OrderKind::ORDER_CANCEL:
-      return fmt::format("client {} cancels its order to {}", order.client, robot);
+      return fmt::format("{} cancels its order to {}", client, robot);
     case msg::OrderKind::ORDER_HOLD:
-      return fmt::format("client {} holds {}", order.client, robot);
+      return fmt::format("{} holds {}", client, robot);
     case msg::OrderKind::ORDER_RESUME:
-      return fmt::format("client {} resumes {}", order.client, robot);
+      return fmt::format("{} resumes {}", client, robot);
     case msg::OrderKind::ORDER_ZONE:
-      return fmt::format("client {} draws zone {} around ({:.3f}, {:.3f}) m", order.client, order.zone_number,
+      return fmt::format("{} draws zone {} around ({:.3f}, {:.3f}) m", client, order.zone_number,
                          order.zone.corners_m.front().x(), order.zone.corners_m.front().y());
     case msg::OrderKind::ORDER_REMOVE_ZONE:
       break;
   }
-  return fmt::format("client {} removes zone {}", order.client, order.zone_number);
+  return fmt::format("{} removes zone {}", client, order.zone_number);
 }
 
 /// Describes a fault in words.

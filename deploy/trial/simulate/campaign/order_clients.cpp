@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "common/protocol/client_text.hpp"
 #include "common/protocol/process_names.hpp"
 #include "simulator/world/body.hpp"
 
@@ -133,9 +134,9 @@ void OrderClients::on_truth(const msg::GroundTruth& truth) {
     const double moved_m = (position_m - rest_m[body.robot()]).norm();
     if (moved_m <= kMaxMovement_m) continue;
     rest_m[body.robot()] = position_m;
-    failures_.push_back(
-        fmt::format("held robot {} moved {:.3f} m, {:.3f} s after a hold of client {} was confirmed",
-                    body.robot(), moved_m, to_seconds(now - *hold->confirmed_at), hold->client));
+    failures_.push_back(fmt::format("held robot {} moved {:.3f} m, {:.3f} s after a hold of {} was confirmed",
+                                    body.robot(), moved_m, to_seconds(now - *hold->confirmed_at),
+                                    client_phrase(hold->client, {})));
   }
   rest_m_ = std::move(rest_m);
 }
@@ -160,13 +161,14 @@ void OrderClients::on_memory(const msg::OrderMemory& message) {
   if (++memory.pages == page->count) memories_[page->process] = memory;
 }
 
-void OrderClients::check_drives(const Client& client, std::vector<std::string>& failures) const {
-  for (const OrderHandle handle : client.given) {
-    const SentOrder* const sent = client.orders.find(handle);
+void OrderClients::check_drives(const Client& sender, std::vector<std::string>& failures) const {
+  for (const OrderHandle handle : sender.given) {
+    const SentOrder* const sent = sender.orders.find(handle);
     if (!sent || sent->phase == OrderPhase::kRefused) continue;
     const Order& order = sent->order;
+    const std::string client = client_phrase(order.client, order.client_name);
     if (sent->phase == OrderPhase::kSent) {
-      failures.push_back(fmt::format("client {} got no answer to an order", order.client));
+      failures.push_back(fmt::format("{} got no answer to an order", client));
       continue;
     }
     if (!drives(order)) continue;
@@ -174,8 +176,8 @@ void OrderClients::check_drives(const Client& client, std::vector<std::string>& 
       if (excused_.contains(process)) continue;
       const auto known = memory.drives.find({order.robot, rank_of(order.client)});
       if (known == memory.drives.end() || known->second < std::pair(order.number, order.client))
-        failures.push_back(fmt::format("process {} has forgotten order {} of client {} to robot {}", process,
-                                       order.number, order.client, order.robot));
+        failures.push_back(fmt::format("{} has forgotten order {} of {} to robot {}", process_name(process),
+                                       order.number, client, order.robot));
     }
   }
 }

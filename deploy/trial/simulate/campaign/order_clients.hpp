@@ -71,7 +71,7 @@ class OrderClients {
   void on_memory(const msg::OrderMemory& memory);
   /// The confirmed hold of the robot that has lasted longest; null if there is none.
   const Hold* hold_of(RobotId robot) const;
-  void check_drives(const Client& client, std::vector<std::string>& failures) const;
+  void check_drives(const Client& sender, std::vector<std::string>& failures) const;
 
   const double touching_distance_m_;
   const Duration time_to_coast_;  // time in which a robot without power comes to rest

@@ -163,6 +163,16 @@ TEST_CASE("when all faults end, link qualities recover and partitions end") {
   CHECK(verdicts.answered > 10);
 }
 
+TEST_CASE("the description of a plan says who gives an order") {
+  FaultPlan plan;
+  plan.healed_at = 3s;
+  plan.add(1s, GiveOrder{{msg::OrderKind::ORDER_HOLD, 3, static_cast<ClientId>(Sender::kOperator)}});
+  plan.add(2s, GiveOrder{{msg::OrderKind::ORDER_RESUME, kAllRobots, 1'000'001}});
+  CHECK(to_lines(plan) ==
+        std::vector<std::string>{"one host per process", "1.000 s: the operator holds robot 3",
+                                 "2.000 s: client 1000001 resumes all robots", "3.000 s: end of all faults"});
+}
+
 TEST_CASE("the same seed gives the same trial result and a different seed a different result") {
   const auto outcome = [](std::uint64_t seed) {
     Report report;

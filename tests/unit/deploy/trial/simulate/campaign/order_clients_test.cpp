@@ -148,7 +148,9 @@ TEST_CASE("a trial does not fail because an isolated coordinator forgot an order
   order.goals = {{{1, 1}}};
   clients.give(order);
   system.run_for(1s);
-  CHECK(clients.failures().size() == 1);
+  REQUIRE(clients.failures().size() == 1);
+  CHECK_THAT(clients.failures()[0],
+             StartsWith("coordinator 1 has forgotten order ") && EndsWith(" of client 1000001 to robot 0"));
   system.restart("coordinator 1");
   system.run_for(3s);
   CHECK(clients.failures().empty());
@@ -177,9 +179,11 @@ TEST_CASE("a trial does not fail because a permanently isolated coordinator neve
 TEST_CASE("a trial fails if an order is not answered") {
   Trial trial;
   trial.system.kill("coordinator");
+  trial.give(msg::OrderKind::ORDER_HOLD, 0, kOperator);
   trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);
   trial.system.run_for(2s);
-  CHECK(trial.clients.failures().size() == 1);
+  CHECK(trial.clients.failures() == std::vector<std::string>{"the operator got no answer to an order",
+                                                             "client 1000001 got no answer to an order"});
 }
 
 }  // namespace sidestep::order_clients_test
