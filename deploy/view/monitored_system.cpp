@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
-#include "common/file/folder.hpp"
+#include "common/file/new_file.hpp"
 #include "common/file/write_file.hpp"
 #include "common/log/log.hpp"
 #include "common/process/stop_signals.hpp"
@@ -25,14 +25,11 @@ using namespace std::chrono_literals;
 
 constexpr Duration kPollPeriod = 5ms, kFlushPeriod = 1s;
 
-/// A name for a recording that a viewer starts, e.g. recordings/crossing-20261125T180509.mcap; creates its
-/// folder.
+/// Creates the file of a recording that a viewer starts, e.g. recordings/crossing-20261125T180509.mcap.
 std::string new_recording_file(const Scenario& scenario) {
   const std::string report = default_report_path(scenario.name, std::nullopt);
   const std::filesystem::path name = std::filesystem::path(report).filename().replace_extension(".mcap");
-  const std::string path = (std::filesystem::path("recordings") / name).string();
-  create_folder_of(path);
-  return path;
+  return create_new_file((std::filesystem::path("recordings") / name).string());
 }
 
 /// A monitor of a running system, and everything that it needs.

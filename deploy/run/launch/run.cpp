@@ -4,12 +4,12 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fmt/format.h>
 #include <stdexcept>
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/console.hpp"
+#include "common/file/new_file.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/free_domain.hpp"
@@ -30,13 +30,6 @@
 namespace sidestep {
 
 namespace {
-
-/// The path with a number inserted: FOLDER/NAME-NUMBER.EXTENSION.
-std::string numbered(const std::filesystem::path& file, std::size_t number) {
-  return (file.parent_path() /
-          fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()))
-      .string();
-}
 
 /// When the file was written; nullopt if there is no file.
 std::optional<std::filesystem::file_time_type> written_at(const std::string& file) {
@@ -93,9 +86,9 @@ int run(const RunOptions& given) {
     throw std::invalid_argument(
         "--monitor: a browser cannot reach the monitor in a network namespace; start `sidestep monitor` "
         "there");
-  const std::string report_path =
+  std::string report_path =
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
-  const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
+  std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
   require_separate_outputs({{"SCENARIO", options.scenario_file}, {"--hosts", options.hosts_file}},
                            {{"the log", log_path},
                             {"--report", report_path},
@@ -109,6 +102,11 @@ int run(const RunOptions& given) {
     require_free_port(*options.monitor_port);
   }
   if (const int exit_code = check_domain(options.dds); exit_code != 0) return exit_code;
+  if (options.report_file.empty()) {
+    // Another run of the scenario may start in the same second.
+    log_path = create_new_file(log_path);
+    report_path = std::filesystem::path(log_path).replace_extension(".json").string();
+  }
   const TemporaryFolder robot_memory;  // starts empty with each run
   options.floor.memory_folder = robot_memory.path();
   ProcessGroup group(log_path);
@@ -128,7 +126,7 @@ int run(const RunOptions& given) {
   work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
     return run_and_report_errors("sidestep run", [&] {
       if (!deaths.empty() && !options.recording_file.empty())
-        options.recording_file = numbered(options.recording_file, deaths.size() + 1);
+        options.recording_file = numbered_path(options.recording_file, deaths.size() + 1);
       const Predecessors before{deaths, std::chrono::steady_clock::now() - began};
       Launcher launcher(options, scenario, hosts.placement(), hosts.network(), processes, before);
       Report report = launcher.run();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/file/new_file.hpp"
 #include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_group.hpp"
 #include "deploy/run/launch/process_keys.hpp"
@@ -101,9 +102,12 @@ class LaunchedTestRun {
 
 RunOutcome run_over_dds(const FaultTest& test, const LaunchOptions& options) {
   const RunHosts hosts(hosts_of(test, options), test.scenario);
-  const RunOptions run = run_options(test, options, hosts);
-  const std::string log_file = std::filesystem::path(run.report_file).replace_extension(".log").string();
+  RunOptions run = run_options(test, options, hosts);
   require_free_domain(run.dds);
+  // Another run of the scenario may start in the same second.
+  const std::string log_file =
+      create_new_file(std::filesystem::path(run.report_file).replace_extension(".log").string());
+  run.report_file = std::filesystem::path(log_file).replace_extension(".json").string();
   ProcessGroup processes(log_file);
   Launcher launcher(run, test.scenario, hosts.placement(), hosts.network(), processes);
   RunOutcome outcome = LaunchedTestRun(test, hosts, run, launcher).run();
