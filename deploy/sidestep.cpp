@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <unistd.h>
 
@@ -37,11 +40,25 @@
 
 namespace {
 
-bool is_evaluation(std::string_view command) { return command == "study" || command == "bench"; }
+/// The commands of the program for studies and benchmarks, which needs more libraries.
+struct EvaluationCommand {
+  const char* name;
+  const char* description;
+};
+constexpr std::array kEvaluationCommands{
+    EvaluationCommand{"study", "Experiments on the system, see tests/study"},
+    EvaluationCommand{"bench", "Benchmarks parts of the system against other libraries"}};
 
-/// Replaces this process with the program for studies and benchmarks, which needs more libraries.
+bool is_evaluation(std::string_view word) {
+  return std::ranges::any_of(kEvaluationCommands,
+                             [word](const auto& command) { return command.name == word; });
+}
+
+std::string evaluation_program() { return sidestep::sibling_program_path("sidestep-evaluation"); }
+
+/// Replaces this process with the program for studies and benchmarks.
 int exec_evaluation(const char* const* argv) {
-  const std::string program = sidestep::sibling_program_path("sidestep-evaluation");
+  const std::string program = evaluation_program();
   if (!std::filesystem::exists(program)) {
     sidestep::print_to(stderr, "sidestep: {} does not exist; `deploy/build --development` builds it\n",
                        program);
@@ -50,6 +67,23 @@ int exec_evaluation(const char* const* argv) {
   execv(program.c_str(), const_cast<char* const*>(argv));
   sidestep::print_to(stderr, "sidestep: cannot start {}\n", program);
   return sidestep::kExitFailure;
+}
+
+/// Adds the commands of that program if it was built, for help and for mistyped words. Says at the end of
+/// --help how to get them otherwise.
+void add_evaluation_commands(const sidestep::CliCommand& app, std::function<int()>& action,
+                             const char* const* argv) {
+  const std::string help = "`sidestep help COMMAND` shows the options of a command.";
+  if (!std::filesystem::exists(evaluation_program())) {
+    app.add_footer(help + " Also `sidestep study` and `sidestep bench`, after `deploy/build --development`.");
+    return;
+  }
+  app.add_footer(help);
+  for (const EvaluationCommand& command : kEvaluationCommands) {
+    app.add_subcommand(command.name, command.description).on_parsed([&action, argv] {
+      action = [argv] { return exec_evaluation(argv); };
+    });
+  }
 }
 
 }  // namespace
@@ -87,11 +121,8 @@ int main(int argc, char** argv) {
   add_plan_command(app, action);
   add_frame_command(app, action);
   add_pattern_command(app, action);
+  add_evaluation_commands(app, action, argv);
   command_line.add_help_command();
-  app.add_footer(
-      "`sidestep help COMMAND` shows the options of a command. Also `sidestep study` and `sidestep bench`, "
-      "after "
-      "`deploy/build --development`.");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   return run_and_report_errors("sidestep", action);
 }
