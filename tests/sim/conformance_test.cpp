@@ -80,6 +80,17 @@ TEST_CASE("a healthy robot with Sidestep's firmware conforms") {
   CHECK(report.is_conformant());
 }
 
+TEST_CASE("a healthy robot conforms at any rate and phase of the cameras") {
+  const auto [rate_hz, seed] =
+      GENERATE(table<double, std::uint64_t>({{5, 1}, {9, 1}, {10, 1}, {10, 2}, {10, 3}, {25, 1}}));
+  Scenario scenario = lone_robot();
+  scenario.vision.rate_hz = rate_hz;
+  scenario.limits.speed_mps = 1;
+  const ConformanceReport report = examine_firmware(scenario, seed);
+  INFO("rate " << rate_hz << " seed " << seed << "\n" << to_text(report));
+  CHECK(report.is_conformant());
+}
+
 // The latency that an earlier conformance test measured; see the test of the measured latency.
 constexpr Duration kMeasuredLatency = 118ms;
 

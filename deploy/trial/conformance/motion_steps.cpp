@@ -8,6 +8,7 @@
 
 #include "common/motion/safety_budget.hpp"
 #include "deploy/trial/conformance/conformance_step.hpp"
+#include "deploy/trial/conformance/stop_observation.hpp"
 
 namespace sidestep {
 namespace {
@@ -401,8 +402,9 @@ class NoMoreCommandsStep final : public ConformanceStep {
       context.stream.extend(drive_to(begin_m_, context.scenario.limits, 0.5));
       if (!is_at(context, begin_m_) && now - *since_ < kDriveTimeout) return false;
       has_begun_ = true;
+      since_ = now;
     }
-    if (!stopped_at_) {
+    if (!observation_) {
       const double speed_mps = speed_mps_;
       context.stream.extend([speed_mps](const State& from, Time) {
         return Vec2((Vec2(speed_mps, 0) - from.velocity_mps) / 0.05);
@@ -414,24 +416,23 @@ class NoMoreCommandsStep final : public ConformanceStep {
       const bool is_at_end =
           last && last->trajectory.rest_position_m().x() >
                       context.scenario.field.length_m / 2 - context.scenario.radius_m - 0.1;
-      if (!is_fast && !is_at_end && now - *since_ < kDriveTimeout) return false;
-      if (!last) return now - *since_ > kDriveTimeout && judge(context);
-      stopping_ = *last;
+      if (!is_fast && !is_at_end) return now - *since_ > kDriveTimeout && give_up(context);
       // The last version is sent until the robot has it.
-      stopped_at_ = now;
+      observation_.emplace(*last);
       probe.on_sample([this, &context](const MotionSample& sample) {
         keep_error(context, sample);
-        seen_.push_back(sample);
+        observation_->add(sample);
       });
     }
-    if (probe.robot_now() < stopping_->trajectory.start() - context.stream.notice() + 2 * probe.cycle())
+    if (probe.robot_now() < observation_->stop().start() - context.stream.notice() + 2 * probe.cycle())
       return false;
     context.stream.stop();
     probe.sends_commands = !is_silent_;
-    if (probe.robot_now() < stopping_->trajectory.end() + kSettlingTime) return false;
+    if (!observation_->is_over(probe.robot_now())) return false;
     probe.sends_commands = true;
     probe.on_sample(nullptr);
-    return judge(context);
+    judge(context);
+    return true;
   }
 
  private:
@@ -444,22 +445,21 @@ class NoMoreCommandsStep final : public ConformanceStep {
     since_ = context.probe.now();
   }
 
-  bool judge(ConformanceContext& context) {
-    if (!stopping_ || seen_.size() < 10) {
-      context.report.rows.push_back(
-          {rule_, Conformity::kNotJudged, "the robot could not be accelerated, or was not seen"});
-      return true;
+  bool give_up(ConformanceContext& context) {
+    context.stream.stop();
+    context.report.rows.push_back(
+        {rule_, Conformity::kNotJudged,
+         fmt::format("the robot could not be accelerated to {:.2f} m/s", speed_mps_)});
+    return true;
+  }
+
+  void judge(ConformanceContext& context) {
+    if (const auto reason = observation_->why_not_judged()) {
+      context.report.rows.push_back({rule_, Conformity::kNotJudged, *reason});
+      return;
     }
-    const Vec2 rest_m = stopping_->trajectory.rest_position_m();
-    double overshoot_m = 0;
-    Vec2 last_m(0, 0);
-    int last_count = 0;
-    for (const MotionSample& sample : seen_) {
-      overshoot_m = std::max(overshoot_m, sample.seen_m.x() - rest_m.x());
-      if (sample.at + 300ms > seen_.back().at) last_m += sample.seen_m, ++last_count;
-    }
-    const double error_m = (last_m / last_count - rest_m).norm();
-    const Trajectory& stop = stopping_->trajectory;
+    const double overshoot_m = observation_->overshoot_m(), error_m = observation_->rest_error_m();
+    const Trajectory& stop = observation_->stop();
     const double from_mps = stop.state_at(stop.start() + 3 * context.probe.cycle()).velocity_mps.norm();
     const double d = context.scenario.limits.deceleration_mps2;
     const double braking_mps2 = from_mps * from_mps / (2 * (from_mps * from_mps / (2 * d) + overshoot_m));
@@ -469,20 +469,19 @@ class NoMoreCommandsStep final : public ConformanceStep {
         "from {:.2f} m/s it overshoots by {:.1f} mm and rests {:.1f} mm off its place: {:.2f} m/s² of "
         "{:g}",
         from_mps, overshoot_m * 1e3, error_m * 1e3, braking_mps2, d);
+    if (observation_->has_own_stop()) figures += "; the robot made its own stop";
     const Conformity conformity = judged(is_passed, context, figures);
     context.report.rows.push_back({rule_, conformity, figures});
     if (!is_silent_) context.report.figures.is_within_limits = is_passed;
-    return true;
   }
 
   std::string rule_;
   double speed_mps_;
   bool is_silent_;
   Vec2 begin_m_{0, 0};
-  std::optional<Time> since_, stopped_at_;
+  std::optional<Time> since_;  ///< the beginning of the way to begin_m_, then of the acceleration
   bool has_begun_ = false;
-  std::optional<Version> stopping_;
-  std::vector<MotionSample> seen_;
+  std::optional<StopObservation> observation_;
 };
 
 /// Reports a false position to the robot, as if it had been moved.

@@ -103,7 +103,7 @@ void RobotProbe::take_samples() {
     });
     if (executed == executed_.rend() || !on_sample_) continue;
     on_sample_({seen.observed_at, at, seen.position_m, executed->version.trajectory.motion_at(at),
-                executed->is_off_reference});
+                executed->version.number, executed->is_off_reference});
   }
 }
 

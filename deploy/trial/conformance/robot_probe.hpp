@@ -20,6 +20,7 @@ struct MotionSample {
   Time robot_at{};  ///< time of the observation by the robot's clock
   Vec2 seen_m{0, 0};
   Motion reference;
+  VersionNumber executed = 0;  ///< the version that prescribed it
   bool is_off_reference = false;
 };
 
