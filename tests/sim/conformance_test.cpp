@@ -127,6 +127,33 @@ TEST_CASE("a robot that brakes with 60 % of its stated deceleration fails the br
   CHECK_FALSE(report.figures.is_within_limits);
 }
 
+TEST_CASE("a robot is not blamed for how it moves while reports are missing, and the cause is named") {
+  const Scenario scenario = lone_league_robot();
+  SimNetwork network(1, kBegin, scenario.network);
+  BaseSettings bases;
+  bases.braking_mps2 = 3;
+  DrivenFloor floor(network, scenario, bases, kMeasuredLatency, 1);
+  SimBus vision_bus(network), bus(network);
+  VisionNode vision(vision_bus, scenario, 1);
+  Conformance conformance(bus, scenario, kRobot, static_cast<Incarnation>(to_ns(network.now())));
+  bool is_paused = false;
+  for (const Time limit = network.now() + 300s; !conformance.is_finished() && network.now() < limit;) {
+    if (!is_paused && conformance.activity() == "braking") {
+      bus.pause(network.now() + 120ms, 1000);
+      is_paused = true;
+    }
+    network.run_until(network.now() + 20ms);
+  }
+  INFO(to_text(conformance.report()));
+  REQUIRE(conformance.is_finished());
+  CHECK(failed(conformance.report()).empty());
+  CHECK_FALSE(conformance.report().is_conformant());
+  const auto row = std::ranges::find(conformance.report().rows, "braking", &ConformanceRow::rule);
+  REQUIRE(row != conformance.report().rows.end());
+  CHECK(row->conformity == Conformity::kNotJudged);
+  CHECK_THAT(row->figures, ContainsSubstring("a computer or the network is too busy"));
+}
+
 TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails the latency check") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;

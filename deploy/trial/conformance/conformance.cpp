@@ -21,6 +21,7 @@ void Conformance::cycle() {
         report_.rows.size() > rows && report_.rows.back().conformity != Conformity::kPassed;
     const bool is_last = steps_[step_]->is_required() && has_failed;
     step_ = is_last ? steps_.size() : step_ + 1;
+    probe_.reset_gap();
   }
   probe_.send_command();
   bus_.at(bus_.now() + scenario_.cycle, [this] { cycle(); });

@@ -36,10 +36,19 @@ constexpr Duration kMaxLate = 150ms;
 Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
 
 /// A robot whose motors respond later or earlier than it assumes cannot follow its reference; only the
-/// latency row then fails.
+/// latency row then fails. If reports were missing during the step, this process, the robot's, or the network
+/// between them paused, and versions may have come too late.
 Conformity judged(bool is_passed, const ConformanceContext& context, std::string& figures) {
-  if (is_passed || !context.is_late) return passed_if(is_passed);
-  figures += "; its latency prevents it from following";
+  if (is_passed) return Conformity::kPassed;
+  if (context.is_late) {
+    figures += "; its latency prevents it from following";
+    return Conformity::kNotJudged;
+  }
+  const RobotProbe& probe = context.probe;
+  if (probe.longest_gap() <= probe.max_gap()) return Conformity::kFailed;
+  figures +=
+      fmt::format("; a computer or the network is too busy: reports came {:.0f} ms apart, not {:.0f} ms",
+                  to_seconds(probe.longest_gap()) * 1e3, to_seconds(probe.max_gap()) * 1e3);
   return Conformity::kNotJudged;
 }
 
@@ -274,6 +283,7 @@ class TrackingStep final : public ConformanceStep {
     }
     keep_uncertainty(context);
     const bool is_broken = context.stream.broken() > broken_before_;
+    if (is_broken && !broken_at_mps_) broken_at_mps_ = speed_mps_;
     if (level_ < levels_.size() && (now - level_since_ > kLevelTime || is_broken)) {
       level_ = is_broken ? levels_.size() : level_ + 1;
       level_since_ = now;
@@ -285,7 +295,7 @@ class TrackingStep final : public ConformanceStep {
     context.stream.stop();
     if (!context.stream.is_at_rest() && now - level_since_ < kDriveTimeout) return false;
     probe.on_sample(nullptr);
-    add_rows(context, is_broken);
+    add_rows(context);
     return true;
   }
 
@@ -348,7 +358,7 @@ class TrackingStep final : public ConformanceStep {
     return true;
   }
 
-  void add_rows(ConformanceContext& context, bool is_broken) {
+  void add_rows(ConformanceContext& context) {
     const double bound_m = context.scenario.tracking_bound_m,
                  noise_m = kNoiseDeviations * context.vision_noise_m;
     double max_error_m = 0;
@@ -359,8 +369,9 @@ class TrackingStep final : public ConformanceStep {
         figures += fmt::format("{:.1f} mm at {:.1f} m/s, ", level.max_error_m * 1e3, level.speed_mps);
     }
     figures += fmt::format("bound {:.1f} mm", bound_m * 1e3);
-    const bool is_within = max_error_m <= bound_m + noise_m && !is_broken;
-    if (is_broken) figures += fmt::format("; the robot left the reference at {:.1f} m/s", speed_mps_);
+    const bool is_within = max_error_m <= bound_m + noise_m && !broken_at_mps_;
+    if (broken_at_mps_)
+      figures += fmt::format("; the robot left the reference at {:.1f} m/s", *broken_at_mps_);
     const Conformity conformity = judged(is_within, context, figures);
     context.report.rows.push_back({"tracking", conformity, figures});
     // The figure of eight cannot be driven at the scenario's speed on a small field.
@@ -384,6 +395,7 @@ class TrackingStep final : public ConformanceStep {
   Time level_since_{};
   bool has_begun_ = false;
   int broken_before_ = 0;
+  std::optional<double> broken_at_mps_;  ///< the speed at which the robot left the reference
 };
 
 /// Accelerates on a straight line, and then sends nothing that would continue the motion.

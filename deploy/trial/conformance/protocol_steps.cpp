@@ -8,7 +8,6 @@
 
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/version_codec.hpp"
-#include "common/protocol/report_period.hpp"
 #include "deploy/trial/conformance/conformance_step.hpp"
 
 namespace sidestep {
@@ -17,9 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kReadyTimeout = 15s, kAnswerTimeout = 1s;
-// A report may arrive this much later than the one before: the network and the scheduling of both processes
-// delay reports by different times.
-constexpr Duration kMaxDelayVariation = 15ms;
 // After a version's start, a report of it arrives within this time.
 constexpr Duration kReportTime = 100ms;
 // Pause between the robot's refusal and the next attempt.
@@ -62,7 +58,7 @@ class ReportsStep final : public ConformanceStep {
     if (now - *heard_since_ < 2s) return false;
     const double rate_hz =
         static_cast<double>(probe.report_count() - first_report_count_) / to_seconds(now - *heard_since_);
-    const Duration bound = max_report_gap(probe.cycle()) + kMaxDelayVariation;
+    const Duration bound = probe.max_gap();
     const bool is_on_time = probe.longest_gap() <= bound;
     const bool is_passed = is_on_time && probe.malformed_reports() == 0 && !robot_report->is_lifted;
     context.report.rows.push_back(

@@ -6,11 +6,15 @@
 
 #include "common/messaging/observation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
+#include "common/protocol/report_period.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxExecuted = 256, kMaxUnjudged = 256;
+// A report may arrive this much later than the one before: the network and the scheduling of both processes
+// delay reports by different times.
+constexpr Duration kMaxDelayVariation = std::chrono::milliseconds(15);
 
 }  // namespace
 
@@ -33,6 +37,8 @@ Duration RobotProbe::robot_clock_offset() const {
 }
 
 Time RobotProbe::robot_now() const { return bus_.now() + robot_clock_offset(); }
+
+Duration RobotProbe::max_gap() const { return max_report_gap(cycle_) + kMaxDelayVariation; }
 
 void RobotProbe::send_command() {
   if (!sends_commands) return;

@@ -54,6 +54,8 @@ class RobotProbe {
   /// The longest interval between two reports since the last reset_gap().
   Duration longest_gap() const { return longest_gap_; }
   void reset_gap() { longest_gap_ = Duration{0}; }
+  /// The longest interval between two reports of a robot that reports as often as it must.
+  Duration max_gap() const;
   const std::optional<RobotObservation>& seen() const { return seen_; }
   /// Bounds on how far the robot's clock is ahead of this process's clock; nullopt before the first exchange.
   std::optional<OffsetInterval> clock_offset() const { return clock_.at(bus_.now()); }
