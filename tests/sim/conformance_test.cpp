@@ -258,6 +258,24 @@ TEST_CASE("a robot passes the check of reports if it reports as often as it must
   CHECK(row.conformity == (lateness == 0ms ? Conformity::kPassed : Conformity::kFailed));
 }
 
+TEST_CASE("a robot is not blamed for reports that it makes in time and that arrive late") {
+  const Scenario scenario = lone_robot();
+  SimNetwork network(1, kBegin, scenario.network);
+  ReportingRobot robot(network, max_report_gap(scenario.cycle));
+  SimBus bus(network);
+  Conformance conformance(bus, scenario, kRobot, static_cast<Incarnation>(to_ns(network.now())));
+  const std::size_t max_queued = GENERATE(1u, 1000u);
+  network.run_until(network.now() + 1s);
+  bus.pause(network.now() + 100ms, max_queued);
+  network.run_until(network.now() + 3s);
+  REQUIRE_FALSE(conformance.report().rows.empty());
+  const ConformanceRow& row = conformance.report().rows.front();
+  CAPTURE(to_line(row));
+  CHECK(row.rule == "reports");
+  CHECK(row.conformity == Conformity::kNotJudged);
+  CHECK_THAT(row.figures, ContainsSubstring("the network or this computer is too busy"));
+}
+
 TEST_CASE("a robot that sends no reports fails the check of reports, and no further checks are made") {
   const Scenario scenario = lone_robot();
   SimNetwork network(1, kBegin, scenario.network);

@@ -65,7 +65,15 @@ void RobotProbe::on_robot_report(const msg::Feedback& message) {
     ++malformed_reports_;
     return;
   }
-  if (report_count_++ > 0) longest_gap_ = std::max(longest_gap_, now - report_at_);
+  if (report_count_++ > 0) {
+    longest_gap_ = std::max(longest_gap_, now - report_at_);
+    const std::uint64_t number = message.header().message_number();
+    constexpr std::uint64_t kMaxLost = 1000;
+    const std::uint64_t made = number > message_number_ ? std::min(number - message_number_, kMaxLost) : 1;
+    longest_gap_at_robot_ = std::max(
+        longest_gap_at_robot_, (robot_report->valid_at - robot_report_->valid_at) / static_cast<int>(made));
+  }
+  message_number_ = message.header().message_number();
   if (robot_report->command)
     (void)clock_.add(
         {robot_report->command->sent_at, robot_report->command->received_at, robot_report->valid_at, now});

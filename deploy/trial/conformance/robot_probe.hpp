@@ -53,7 +53,10 @@ class RobotProbe {
   std::uint64_t malformed_reports() const { return malformed_reports_; }
   /// The longest interval between two reports since the last reset_gap().
   Duration longest_gap() const { return longest_gap_; }
-  void reset_gap() { longest_gap_ = Duration{0}; }
+  /// The longest interval between the times at which the robot made them. Where reports were lost, by their
+  /// message numbers, it is the mean of the interval that they leave.
+  Duration longest_gap_at_robot() const { return longest_gap_at_robot_; }
+  void reset_gap() { longest_gap_ = longest_gap_at_robot_ = Duration{0}; }
   /// The longest interval between two reports of a robot that reports as often as it must.
   Duration max_gap() const;
   const std::optional<RobotObservation>& seen() const { return seen_; }
@@ -85,7 +88,8 @@ class RobotProbe {
   std::optional<RobotReport> robot_report_;
   Time report_at_{};
   std::uint64_t report_count_ = 0, malformed_reports_ = 0;
-  Duration longest_gap_{0};
+  std::uint64_t message_number_ = 0;  ///< of the last report
+  Duration longest_gap_{0}, longest_gap_at_robot_{0};
   std::optional<RobotObservation> seen_;
   std::optional<PoseFix> fix_;  ///< not sent yet
   struct Executed {
