@@ -85,6 +85,7 @@ TEST_CASE("a healthy robot conforms at any rate and phase of the cameras") {
       GENERATE(table<double, std::uint64_t>({{5, 1}, {9, 1}, {10, 1}, {10, 2}, {10, 3}, {25, 1}}));
   Scenario scenario = lone_robot();
   scenario.vision.rate_hz = rate_hz;
+  scenario.vision.position_noise_m = 0;
   scenario.limits.speed_mps = 1;
   const ConformanceReport report = examine_firmware(scenario, seed);
   INFO("rate " << rate_hz << " seed " << seed << "\n" << to_text(report));
@@ -127,7 +128,8 @@ TEST_CASE("a robot that brakes with 60 % of its stated deceleration fails the br
   CHECK_FALSE(report.figures.is_within_limits);
 }
 
-TEST_CASE("a robot is not blamed for how it moves while reports are missing, and the cause is named") {
+TEST_CASE("a robot is not blamed for how it moves while reports are missing, and is examined again") {
+  const bool is_paused_always = GENERATE(true, false);
   const Scenario scenario = lone_league_robot();
   SimNetwork network(1, kBegin, scenario.network);
   BaseSettings bases;
@@ -136,22 +138,23 @@ TEST_CASE("a robot is not blamed for how it moves while reports are missing, and
   SimBus vision_bus(network), bus(network);
   VisionNode vision(vision_bus, scenario, 1);
   Conformance conformance(bus, scenario, kRobot, static_cast<Incarnation>(to_ns(network.now())));
-  bool is_paused = false;
-  for (const Time limit = network.now() + 300s; !conformance.is_finished() && network.now() < limit;) {
-    if (!is_paused && conformance.activity() == "braking") {
-      bus.pause(network.now() + 120ms, 1000);
-      is_paused = true;
+  const Time limit = network.now() + 300s;
+  Time next_pause{};
+  while (!conformance.is_finished() && network.now() < limit) {
+    const bool is_due = conformance.activity() == "braking" || is_paused_always;
+    if (is_due && conformance.activity().starts_with("braking") && network.now() >= next_pause) {
+      bus.pause(network.now() + 60ms, 1000);
+      next_pause = network.now() + 1s;
     }
     network.run_until(network.now() + 20ms);
   }
   INFO(to_text(conformance.report()));
   REQUIRE(conformance.is_finished());
-  CHECK(failed(conformance.report()).empty());
-  CHECK_FALSE(conformance.report().is_conformant());
-  const auto row = std::ranges::find(conformance.report().rows, "braking", &ConformanceRow::rule);
-  REQUIRE(row != conformance.report().rows.end());
-  CHECK(row->conformity == Conformity::kNotJudged);
-  CHECK_THAT(row->figures, ContainsSubstring("a computer or the network is too busy"));
+  const auto& rows = conformance.report().rows;
+  REQUIRE(std::ranges::count(rows, "braking", &ConformanceRow::rule) == 1);
+  const ConformanceRow& row = *std::ranges::find(rows, "braking", &ConformanceRow::rule);
+  CHECK(row.conformity == (is_paused_always ? Conformity::kNotJudged : Conformity::kFailed));
+  if (is_paused_always) CHECK_THAT(row.figures, ContainsSubstring("a computer or the network is too busy"));
 }
 
 TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails the latency check") {
@@ -265,15 +268,17 @@ TEST_CASE("a robot is not blamed for reports that it makes in time and that arri
   SimBus bus(network);
   Conformance conformance(bus, scenario, kRobot, static_cast<Incarnation>(to_ns(network.now())));
   const std::size_t max_queued = GENERATE(1u, 1000u);
-  network.run_until(network.now() + 1s);
-  bus.pause(network.now() + 100ms, max_queued);
-  network.run_until(network.now() + 3s);
+  const int pauses = GENERATE(2, 20);
+  for (int second = 0; second < 20; ++second) {
+    network.run_until(network.now() + 1s);
+    if (second < pauses) bus.pause(network.now() + 100ms, max_queued);
+  }
   REQUIRE_FALSE(conformance.report().rows.empty());
   const ConformanceRow& row = conformance.report().rows.front();
-  CAPTURE(to_line(row));
+  CAPTURE(max_queued, pauses, to_line(row));
   CHECK(row.rule == "reports");
-  CHECK(row.conformity == Conformity::kNotJudged);
-  CHECK_THAT(row.figures, ContainsSubstring("the network or this computer is too busy"));
+  CHECK(row.conformity == (pauses == 20 ? Conformity::kNotJudged : Conformity::kPassed));
+  if (pauses == 20) CHECK_THAT(row.figures, ContainsSubstring("the network or this computer is too busy"));
 }
 
 TEST_CASE("a robot that sends no reports fails the check of reports, and no further checks are made") {

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/conformance/conformance.hpp"
 
+#include <algorithm>
+#include <span>
+
 namespace sidestep {
+namespace {
+
+// How often a step is made until it can be judged: a busy computer may disturb one.
+constexpr int kAttempts = 3;
+
+}  // namespace
 
 Conformance::Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation)
     : bus_(bus),
@@ -15,16 +24,35 @@ Conformance::Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Inca
 
 void Conformance::cycle() {
   if (is_finished()) return;
-  const std::size_t rows = report_.rows.size();
-  if (steps_[step_]->update(context_)) {
-    const bool has_failed =
-        report_.rows.size() > rows && report_.rows.back().conformity != Conformity::kPassed;
-    const bool is_last = steps_[step_]->is_required() && has_failed;
-    step_ = is_last ? steps_.size() : step_ + 1;
-    probe_.reset_gap();
-  }
+  if (steps_[step_]->update(context_)) end_step();
   probe_.send_command();
   bus_.at(bus_.now() + scenario_.cycle, [this] { cycle(); });
+}
+
+void Conformance::end_step() {
+  const std::span rows = std::span(report_.rows).subspan(before_step_.rows.size());
+  // A robot that does not know when its motors respond would not be judged again.
+  const bool is_repeated =
+      !context_.is_late && attempt_ < kAttempts &&
+      std::ranges::find(rows, Conformity::kNotJudged, &ConformanceRow::conformity) != rows.end() &&
+      std::ranges::find(rows, Conformity::kFailed, &ConformanceRow::conformity) == rows.end();
+  probe_.reset_gap();
+  if (is_repeated) {
+    ++attempt_;
+    report_ = before_step_;
+    steps_[step_] = std::move(conformance_steps(scenario_)[step_]);
+    return;
+  }
+  const bool has_failed = !rows.empty() && rows.back().conformity != Conformity::kPassed;
+  const bool is_last = steps_[step_]->is_required() && has_failed;
+  step_ = is_last ? steps_.size() : step_ + 1;
+  attempt_ = 1;
+  before_step_ = report_;
+}
+
+std::string Conformance::activity() const {
+  if (is_finished()) return "";
+  return steps_[step_]->name() + (attempt_ > 1 ? ", again" : "");
 }
 
 }  // namespace sidestep

@@ -24,10 +24,12 @@ class Conformance {
   bool is_finished() const { return step_ == steps_.size(); }
   const ConformanceReport& report() const { return report_; }
   /// The current step of the test, in words.
-  std::string activity() const { return is_finished() ? "" : steps_[step_]->name(); }
+  std::string activity() const;
 
  private:
   void cycle();
+  /// Continues with the next step, or makes this one again if it could not be judged.
+  void end_step();
 
   Bus& bus_;
   const Scenario scenario_;
@@ -37,6 +39,8 @@ class Conformance {
   ConformanceContext context_;
   std::vector<std::unique_ptr<ConformanceStep>> steps_;
   std::size_t step_ = 0;
+  int attempt_ = 1;
+  ConformanceReport before_step_;  ///< without the rows and figures of the current step
 };
 
 }  // namespace sidestep
