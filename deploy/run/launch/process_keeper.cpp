@@ -37,8 +37,7 @@ using std::chrono::steady_clock;
 constexpr int kDirectorSocket = 3;  // descriptor of the socket in the director
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr auto kRepeatedStop =
-    1000ms;                          // a starting director does not handle signals yet, so they are repeated
-constexpr auto kMaxIdle = 15'000ms;  // a director is killed this long after its processes have ended
+    1000ms;  // a starting director does not handle signals yet, so they are repeated
 constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // pause before the next director; doubles each time
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
@@ -347,7 +346,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
       }
       if ((keeper.has_ended_all() || !is_connected) && !idle_since) idle_since = now;
       const bool is_stuck = (first_asked_at && now - *first_asked_at > work.shutdown_timeout) ||
-                            (idle_since && now - *idle_since > kMaxIdle);
+                            (idle_since && now - *idle_since > work.exit_timeout);
       if (is_stuck) {
         group.log("the director of the run has not ended in time and is killed");
         kill(director.pid, SIGKILL);

@@ -22,6 +22,8 @@ struct DirectorWork {
   /// A director that has not ended this long after it was asked to end is killed. If a signal has stopped the
   /// director, Ctrl-C takes effect only then.
   std::chrono::milliseconds shutdown_timeout{30'000};
+  /// A director that has not ended this long after its processes have ended is killed.
+  std::chrono::milliseconds exit_timeout{15'000};
   /// Called in this process when the director has ended and processes that outlast the run remain.
   std::function<void()> on_outlasting{};
 };
@@ -30,8 +32,8 @@ struct DirectorWork {
 /// network, and keeps the processes in the group. So they continue if a signal kills the director. Another
 /// director then takes its place, after a pause that doubles each time, up to a minute. When a director ends,
 /// the remaining processes are also ended. SIGINT and SIGTERM are passed on to the director. A director that
-/// does not end in time, or within 15 s of the end of its processes, is killed. If this process dies, the
-/// director is asked to end, and finds that all processes have ended.
+/// does not end in time is killed. If this process dies, the director is asked to end, and finds that all
+/// processes have ended.
 ///
 /// Processes that outlast the run (ChildSpec::outlasts_run) continue after a director has ended with an exit
 /// code, until they end themselves, or SIGINT or SIGTERM arrives, possibly before the director's end.

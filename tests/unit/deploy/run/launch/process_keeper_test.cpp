@@ -51,6 +51,7 @@ struct Fixture {
   int keep(std::function<int(Processes&, const Deaths&)> run) {
     DirectorWork work{std::move(run), [this](const std::string& reason) { lost = reason; }};
     if (shutdown_timeout) work.shutdown_timeout = *shutdown_timeout;
+    if (exit_timeout) work.exit_timeout = *exit_timeout;
     work.on_outlasting = on_outlasting;
     return keep_processes(group, work);
   }
@@ -58,7 +59,7 @@ struct Fixture {
   TemporaryFolder folder;
   ProcessGroup group{folder.file("log")};
   std::string lost;
-  std::optional<std::chrono::milliseconds> shutdown_timeout;  // of directors; nullopt: default
+  std::optional<std::chrono::milliseconds> shutdown_timeout, exit_timeout;  // of directors; nullopt: default
   std::function<void()> on_outlasting;
 };
 
@@ -172,8 +173,9 @@ TEST_CASE("a director that is ending its processes is not asked to end again and
   CHECK(f.lost.empty());
 }
 
-TEST_CASE("a director that hangs after it has ended its processes is killed", "[slow]") {
+TEST_CASE("a director that hangs after it has ended its processes is killed") {
   Fixture f;
+  f.exit_timeout = 500ms;
   const bool hangs_at_exit = GENERATE(false, true);
   CAPTURE(hangs_at_exit);
   const auto hang = [] {
@@ -188,6 +190,7 @@ TEST_CASE("a director that hangs after it has ended its processes is killed", "[
   CHECK(code == 1);
   CHECK(f.lost == "signal 9 (SIGKILL)");
   CHECK_THAT(f.text("log"), ContainsSubstring("has not ended in time and is killed"));
+  CHECK(DirectorWork{}.exit_timeout <= 15s);
 }
 
 TEST_CASE("a stopped director that is asked to end is killed and reported, and its processes end") {
