@@ -39,7 +39,7 @@ TEST_CASE("all robots arrive without contact although each kind of process pause
 
 TEST_CASE(
     "processes that pause until others forget them are rediscovered, including the launcher during startup",
-    "[slow]") {
+    "[half-core][slow]") {
   LaunchedRun run(shuttles(5, ""));
   const Duration until_forgotten = kSilenceLimit + std::chrono::seconds(2);
   REQUIRE(run.wait_until([&] { return run.printed("started agent 1"); }));

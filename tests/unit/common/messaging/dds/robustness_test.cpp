@@ -312,7 +312,7 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
 }
 
 TEST_CASE("a process that was stopped and forgotten reconnects, even if others joined in the meantime",
-          "[slow]") {
+          "[half-core][slow]") {
   stop_and_continue(2, 3, 1);
 }
 
@@ -370,7 +370,8 @@ TEST_CASE("two hundred neighbours that leave at any moment do not disturb other 
   let_neighbours_leave(200, 4);
 }
 
-TEST_CASE("a listener knows a process while it is alive and forgets it seconds after it is killed") {
+TEST_CASE("a listener knows a process while it is alive and forgets it seconds after it is killed",
+          "[half-core]") {
   DdsListener listener(test_settings("listener"));
   Victim victim;
   REQUIRE(run_until([&] { return is_known(listener, victim.name); }, listener));

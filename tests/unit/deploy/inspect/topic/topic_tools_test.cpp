@@ -341,7 +341,7 @@ TEST_CASE("topic list finds the topics of a running process") {
                               ContainsSubstring("1: vision"));
 }
 
-TEST_CASE("topic hz measures a topic, and lists available topics if it has no writer") {
+TEST_CASE("topic hz measures a topic, and lists available topics if it has no writer", "[half-core]") {
   const Publisher publisher;
   const Outcome measured = topic({"hz", "world", "--seconds", "1"});
   CAPTURE(measured.out, measured.err);
@@ -419,7 +419,7 @@ TEST_CASE("topic pub publishes messages of our topics") {
   CHECK(std::chrono::abs(bus.now() - time_from_ns(second.stamp_ns())) < std::chrono::seconds(30));
 }
 
-TEST_CASE("topic pub reports errors in a message and topics without a reader") {
+TEST_CASE("topic pub reports errors in a message and topics without a reader", "[half-core]") {
   CHECK_THROWS_WITH(topic({"pub", "disturbance", "{"}), ContainsSubstring("is not valid JSON"));
   CHECK_THROWS_WITH(topic({"pub", "disturbance", R"({"robot": -1})"}),
                     ContainsSubstring("robot: expected a whole number"));

@@ -149,7 +149,8 @@ TEST_CASE("a child with `restart` is started again as a new process after each d
   CHECK(group.poll(0ms).empty());
 }
 
-TEST_CASE("a child that keeps dying is restarted with growing delays, and promptly after a long life") {
+TEST_CASE("a child that keeps dying is restarted with growing delays, and promptly after a long life",
+          "[half-core]") {
   ProcessGroup group(log_path());
   pid_t pid = group.start(shell("mortal", "exec sleep 1000", true));
   const auto restart_delay = [&] {
