@@ -111,6 +111,27 @@ TEST_CASE(
   check_random_goals(minutes(10));
 }
 
+TEST_CASE("a run on demand goes on when an agent dies while all robots are at rest") {
+  LaunchedRun run(
+      "field: {length_m: 6, width_m: 5}\nrobots:\n  - {id: 0, start_m: [-2, 0]}\n  - {id: 1, start_m: [0, "
+      "0]}\n"
+      "  - {id: 2, start_m: [2, 0]}\n");
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  REQUIRE(kill(run.pid_of("agent 2"), SIGKILL) == 0);
+  REQUIRE(run.wait_until([&] { return run.printed("agent 2 (pid"); }));
+  // Longer than after a death that ends a run.
+  const Time killed = run.bus().now();
+  CHECK(run.wait_until([&] { return run.bus().now() - killed > seconds(4); }));
+  std::vector<std::string> go{"go", "0", "-2,1", "--wait", "--timeout", "20"};
+  for (const std::string& argument : run.dds_arguments()) go.push_back(argument);
+  CHECK(run.command(go) == "exit code 0");
+  REQUIRE(kill(run.pid(), SIGINT) == 0);
+  CHECK(run.wait_for_end() == "exit code 0");
+  INFO(run.output());
+  CHECK(run.report()["passed"] == true);
+  CHECK(run.report()["deaths"][0]["process"] == "agent 2");
+}
+
 TEST_CASE("with --until-idle a run passes only if all robots have finished their orders") {
   const bool has_unfinished = GENERATE(false, true);
   CAPTURE(has_unfinished);

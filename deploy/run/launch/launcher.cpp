@@ -13,6 +13,7 @@
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/senders.hpp"
 #include "deploy/run/launch/end_process.hpp"
+#include "deploy/run/launch/fatal_deaths.hpp"
 #include "deploy/run/launch/monitor_process.hpp"
 #include "deploy/run/launch/process_command.hpp"
 #include "deploy/run/launch/process_group.hpp"
@@ -305,7 +306,7 @@ void Launcher::print_last_lines(const std::string& process) {
 }
 
 bool Launcher::check_end() {
-  if (is_interrupted_ && is_ready_ && metrics_.awaits_orders()) return true;
+  if (is_interrupted_ && is_ready_ && metrics_.awaits_orders()) return end_on_demand();
   if (is_interrupted_) abort_reason_ = kInterrupted;
   if (!abort_reason_.empty()) return true;
   if (!is_ready_) return check_end_of_startup();
@@ -346,8 +347,7 @@ std::string Launcher::startup_failure() const {
 bool Launcher::check_end_of_drive() {
   const Time now = bus_.now();
   const bool awaits_orders = metrics_.awaits_orders();
-  const bool may_end = !awaits_orders || (options_.until_idle && metrics_.has_received_orders());
-  if (!may_end || !metrics_.all_arrived())
+  if (!may_end_by_itself() || !metrics_.all_arrived())
     arrived_since_.reset();
   else if (!arrived_since_)
     arrived_since_ = now;
@@ -356,36 +356,37 @@ bool Launcher::check_end_of_drive() {
   const double limit_s = options_.seconds.value_or(awaits_orders ? std::numeric_limits<double>::infinity()
                                                                  : scenario_.time_limit_s);
   if (to_seconds(now - drive_started_at()) > limit_s) {
-    if (awaits_orders) return true;
+    if (awaits_orders) return end_on_demand();
     abort_reason_ = fmt::format("time limit of {} s", limit_s);
   } else if (is_stuck(now)) {
-    abort_reason_ = fmt::format("{} died", fmt::join(dead_, ", "));
+    abort_reason_ = death_text();
   }
   return !abort_reason_.empty();
 }
+
+bool Launcher::may_end_by_itself() const {
+  return !metrics_.awaits_orders() || (options_.until_idle && metrics_.has_received_orders());
+}
+
+bool Launcher::end_on_demand() {
+  if (has_fatal_deaths()) abort_reason_ = death_text();
+  return true;
+}
+
+std::string Launcher::death_text() const { return fmt::format("{} died", fmt::join(dead_, ", ")); }
 
 Time Launcher::drive_started_at() const {
   return before_.deaths.empty() ? *metrics_.granting_since() : began_ - before_.age;
 }
 
+bool Launcher::has_fatal_deaths() const {
+  return are_fatal(dead_, scenario_.coordinators, metrics_.progress(), !may_end_by_itself());
+}
+
 bool Launcher::is_stuck(Time now) const {
   if (dead_.empty() || now - last_death_ < kStuckTimeout) return false;
   const bool is_unseen = now - *metrics_.seen_at() > kStuckTimeout;
-  if (!is_unseen && !metrics_.all_at_rest()) return false;
-  if (dead_.count("simulator") || dead_.count("robots") || dead_.count("vision") ||
-      are_all_coordinators_dead())
-    return true;
-  for (const RobotProgress& row : metrics_.progress()) {
-    if (!row.is_done && !dead_.count(agent_process(row.robot))) return false;
-  }
-  return true;
-}
-
-bool Launcher::are_all_coordinators_dead() const {
-  for (int number = 0; number < scenario_.coordinators; ++number) {
-    if (!dead_.count(coordinator_process(number))) return false;
-  }
-  return true;
+  return (is_unseen || metrics_.all_at_rest()) && has_fatal_deaths();
 }
 
 }  // namespace sidestep

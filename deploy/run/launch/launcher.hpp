@@ -98,9 +98,16 @@ class Launcher {
   std::string startup_failure() const;
   /// Time of the first grant; if other launchers preceded this one, the time when the first of them began.
   Time drive_started_at() const;
-  /// Whether all robots have stopped, and dead processes keep the remaining robots from arriving.
+  /// Whether the run ends without the user once its robots have finished, because no further order is
+  /// awaited.
+  bool may_end_by_itself() const;
+  /// Ends a run on demand. Sets abort_reason_ if it could not have gone on.
+  bool end_on_demand();
+  /// Whether dead processes prevent all robots from finishing; see are_fatal().
+  bool has_fatal_deaths() const;
+  /// Whether in addition all robots have stopped.
   bool is_stuck(Time now) const;
-  bool are_all_coordinators_dead() const;
+  std::string death_text() const;
 
   const RunOptions& options_;
   const Scenario& scenario_;
