@@ -11,6 +11,15 @@ namespace {
 /// Allows for rounding where a file or a generator gives the exact minimum distance.
 constexpr double kRounding_m = 1e-9;
 
+/// The robot's last goal or, without goals, its start. nullopt for an absent robot without goals.
+std::optional<Vec2> final_position_m(const RobotSpec& robot) {
+  if (!robot.goals.empty()) return robot.goals.back().position_m;
+  return robot.is_absent ? std::nullopt : std::optional(robot.start_m);
+}
+
+/// The line that gives this position.
+int final_line(const RobotLines& lines) { return lines.goals.empty() ? lines.start : lines.goals.back(); }
+
 struct PlacementCheck {
   const Scenario& scenario;
   const std::string& file;
@@ -72,13 +81,26 @@ struct PlacementCheck {
                       fmt::format("{}: distance {:.4f} m, expected at least {:.4f} (2 radii + margin)",
                                   what(), distance, min_distance));
   }
-};
 
-/// The robot's last goal or, without goals, its start. nullopt for an absent robot without goals.
-std::optional<Vec2> final_position_m(const RobotSpec& robot) {
-  if (!robot.goals.empty()) return robot.goals.back().position_m;
-  return robot.is_absent ? std::nullopt : std::optional(robot.start_m);
-}
+  /// Throws ConfigError if two robots would overlap in the end, with the line of the second.
+  void check_final_positions(const RobotSpec& first, const RobotSpec& second, const RobotLines& first_lines,
+                             const RobotLines& second_lines) const {
+    const auto a = final_position_m(first), b = final_position_m(second);
+    if (!a || !b) return;
+    check_distance(*a, *b, final_line(second_lines), [&] {
+      if (!first.goals.empty() && !second.goals.empty())
+        return fmt::format("last goals of robots {} and {} overlap", first.id, second.id);
+      const bool first_stays = first.goals.empty();
+      const RobotSpec &staying = first_stays ? first : second, &driving = first_stays ? second : first;
+      const RobotLines &staying_lines = first_stays ? first_lines : second_lines,
+                       &driving_lines = first_stays ? second_lines : first_lines;
+      return fmt::format(
+          "the last goal of robot {} (line {}) overlaps the start of robot {} (line {}), which has "
+          "no goals and stays there",
+          driving.id, final_line(driving_lines), staying.id, final_line(staying_lines));
+    });
+  }
+};
 
 }  // namespace
 
@@ -108,12 +130,7 @@ void check_placement(const Scenario& scenario, const std::vector<RobotLines>& li
           return fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id);
         });
       }
-      const auto last_i = final_position_m(robots[i]), last_j = final_position_m(robots[j]);
-      if (!last_i || !last_j) continue;
-      const int line = robots[i].goals.empty() ? lines[i].start : lines[i].goals.back();
-      check.check_distance(*last_i, *last_j, line, [&] {
-        return fmt::format("last goals of robots {} and {} overlap", robots[j].id, robots[i].id);
-      });
+      check.check_final_positions(robots[j], robots[i], lines[j], lines[i]);
     }
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every error in a scenario is reported with its line.
 #include <cstdlib>
+#include <fmt/format.h>
 #include <sstream>
 
 #include "common/config/scenario_loader.hpp"
@@ -217,6 +218,19 @@ TEST_CASE("overlapping starts and final goals are rejected, but the exact minimu
                  "starts of robots 0 and 1 overlap: distance 0.1930 m, expected at least 0.1940");
   check_rejected(pair(0.5, 0.193), 7, "last goals of robots 0 and 1 overlap");
   CHECK(error_of(pair(0.194, 0.194)) == "accepted");
+}
+
+TEST_CASE("a last goal at the start of a robot without goals is rejected, and both lines are named") {
+  const std::string driving = "- {id: 4, start_m: [1, 1], goals_m: [[0, 0.1]]}\n",
+                    staying = "- {id: 5, start_m: [0, 0]";
+  const std::string why =
+      "the last goal of robot 4 (line {}) overlaps the start of robot 5 (line {}), which "
+      "has no goals and stays there: distance 0.1000 m";
+  check_rejected("robots:\n" + driving + staying + "}\n", 3, fmt::format(fmt::runtime(why), 2, 3));
+  check_rejected("robots:\n" + staying + "}\n" + driving, 2, fmt::format(fmt::runtime(why), 3, 2));
+  check_rejected("robots:\n- {id: 3, start_m: [0, 0]}\n" + driving, 3,
+                 "the last goal of robot 4 (line 3) overlaps the start of robot 3 (line 2)");
+  CHECK(error_of("robots:\n" + driving + staying + ", absent: true}\n") == "accepted");
 }
 
 TEST_CASE("starts and goals in blocked cells and unreadable maps are rejected") {
