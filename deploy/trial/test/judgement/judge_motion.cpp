@@ -15,7 +15,16 @@ constexpr double kMoving_mps = 0.05;
 // A robot that is not heard from for longer may have moved in that time.
 constexpr double kMaxUnheardRest_s = 0.25;
 
-Judgement not_on_floor(RobotId robot, double from_s, double to_s) {
+/// For a robot that no sample of the span shows.
+Judgement not_on_floor(RobotId robot, double from_s, double to_s, const RunHistory& history) {
+  const bool has_sample = std::ranges::any_of(history.truths, [=](const TruthSample& sample) {
+    return sample.at_s >= from_s && sample.at_s <= to_s;
+  });
+  if (!has_sample) {
+    return Judgement::not_judged(
+        from_s,
+        fmt::format("there is no sample of ground truth between {:.3f} s and {:.3f} s", from_s, to_s));
+  }
   return Judgement::not_judged(
       from_s,
       fmt::format("robot {} was not on the floor between {:.3f} s and {:.3f} s", robot, from_s, to_s));
@@ -56,7 +65,7 @@ Judgement judge_rest(RobotId robot, const ExpectAtRest& check, const RunHistory&
       rested_s = sample.at_s;
     }
   }
-  if (!moved_s) return not_on_floor(robot, check.span.from_s, end_s);
+  if (!moved_s) return not_on_floor(robot, check.span.from_s, end_s, history);
   return Judgement::failed(
       *moved_s, fmt::format("robot {} still moved at {:.3f} m/s{}", robot, speed_mps,
                             rested_s ? fmt::format(", and came to rest by {:.3f} s", *rested_s) : ""));
@@ -70,7 +79,7 @@ Judgement judge_motion(RobotId robot, const ExpectMoving& check, const RunHistor
   }
   if (highest_mps >= kMoving_mps) return {};
   if (const auto unheard = gap_between(check.span.from_s, check.span.to_s, history)) return *unheard;
-  if (!highest_mps) return not_on_floor(robot, check.span.from_s, check.span.to_s);
+  if (!highest_mps) return not_on_floor(robot, check.span.from_s, check.span.to_s, history);
   return Judgement::failed(
       check.span.to_s,
       fmt::format("robot {} did not move; its highest speed was {:.3f} m/s", robot, *highest_mps));
@@ -88,7 +97,7 @@ Judgement judge_speed(RobotId robot, const ExpectMaxSpeed& check, const RunHisto
   }
   if (const auto unheard = check.to_s ? std::nullopt : gap_at_end(history)) return *unheard;
   if (const auto unheard = gap_between(check.from_s, to_s, history)) return *unheard;
-  return is_seen ? Judgement{} : not_on_floor(robot, check.from_s, to_s);
+  return is_seen ? Judgement{} : not_on_floor(robot, check.from_s, to_s, history);
 }
 
 }  // namespace

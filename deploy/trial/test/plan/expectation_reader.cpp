@@ -14,6 +14,16 @@ namespace {
 constexpr std::size_t kMaxExpectations = 1000;
 constexpr Range kClearance_m{0, 1};
 constexpr Range kSpeed_mps{0, 20};
+// Ground truth is sent sixty times a second, so a shorter span may have no sample of it.
+constexpr double kMinSpan_s = 0.02;
+
+/// Throws ConfigError, with the location of its end, if the span is too short.
+void require_long_enough(const TimeSpan& span, const YamlLocation& end) {
+  constexpr double kRounding_s = 1e-9;
+  if (span.to_s - span.from_s >= kMinSpan_s - kRounding_s) return;
+  end.fail(fmt::format("the span from {:g} s to {:g} s is too short: expected at least {:g} s", span.from_s,
+                       span.to_s, kMinSpan_s));
+}
 
 /// Reads one expectation.
 class ExpectationReader {
@@ -89,7 +99,7 @@ class ExpectationReader {
     check.robots = find_robots(map_, "robots", scenario_).value_or(RobotSet{roster_of(scenario_), true});
     check.from_s = optional_moment("from_s").value_or(0);
     check.to_s = optional_moment("to_s");
-    if (check.to_s && *check.to_s <= check.from_s) map_.location_of("to_s").fail("expected more than from_s");
+    if (check.to_s) require_long_enough({check.from_s, *check.to_s}, map_.location_of("to_s"));
     return check;
   }
 
@@ -107,8 +117,7 @@ class ExpectationReader {
     const double time = map_.number(key, {0, 86'400'000}).value_or(0);
     if (map_.schema()) return span;
     span.to_s = key == "by_s" ? time : span.from_s + (key == "within_s" ? time : time * 1e-3);
-    if (span.to_s <= span.from_s)
-      map_.location_of(key).fail(fmt::format("expected a time after {:g} s", span.from_s));
+    require_long_enough(span, map_.location_of(key));
     return span;
   }
 

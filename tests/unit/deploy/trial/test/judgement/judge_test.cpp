@@ -139,6 +139,16 @@ TEST_CASE("moving: fails if a robot does not move within the span") {
   check_not_judged(ExpectMoving{{{7}, false}, {5, 6}}, run(), "robot 7 was not on the floor");
 }
 
+TEST_CASE("a span without a sample of ground truth is not judged, and does not blame the robots") {
+  RunHistory history = run();
+  remove_truth(history, 5.001, 5.1);
+  const std::string why = "there is no sample of ground truth between 5.010 s and 5.050 s";
+  check_not_judged(ExpectAtRest{kOne, {5.01, 5.05}, 0}, history, why);
+  check_not_judged(ExpectMoving{kOne, {5.01, 5.05}}, history, why);
+  check_not_judged(ExpectMaxSpeed{kOne, 1, 5.01, 5.05}, history, why);
+  check_not_judged(ExpectAtRest{{{7}, false}, {5.01, 5.2}, 0}, history, "robot 7 was not on the floor");
+}
+
 TEST_CASE("speed limit: fails at the first moment when a robot exceeds the limit") {
   RunHistory history = run();
   check_passes(ExpectMaxSpeed{kOne, 0.02, 4.1, 9}, history);

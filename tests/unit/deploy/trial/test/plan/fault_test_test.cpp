@@ -210,6 +210,13 @@ TEST_CASE("invalid faults are rejected with their line") {
   check_rejected("faults: kill\n" + expect, kLines + 1, "faults: expected a list");
 }
 
+TEST_CASE("the shortest span that is long enough for a sample of ground truth is accepted") {
+  for (const char* expectation :
+       {"at_rest: 1, after_s: 3, within_s: 0.02", "moving: 1, after_s: 3, by_s: 3.02",
+        "max_speed_mps: 1, from_s: 3, to_s: 3.02"})
+    CHECK_NOTHROW(parse_fault_test(kScenario + "expect:\n  - {" + expectation + "}\n", "file.yaml"));
+}
+
 TEST_CASE("invalid expectations are rejected with their line") {
   check_expectation_rejected("no_contacts: all", "expected an expectation: one of the keys no_contact");
   check_expectation_rejected("no_contact: some", "no_contact: expected a whole number");
@@ -219,12 +226,18 @@ TEST_CASE("invalid expectations are rejected with their line") {
   check_expectation_rejected("arrived: all, by_s: 30", "by_s: expected 0 to 20");
   check_expectation_rejected("at_rest: 1", "expected one of the keys within_s, within_ms and by_s");
   check_expectation_rejected("at_rest: 1, within_s: 1, by_s: 2", "expected one of the keys within_s");
-  check_expectation_rejected("at_rest: 1, within_s: 0", "within_s: expected a time after 0 s");
+  check_expectation_rejected("at_rest: 1, within_s: 0",
+                             "within_s: the span from 0 s to 0 s is too short: expected at least 0.02 s");
+  check_expectation_rejected("at_rest: 1, within_ms: 19.9", "within_ms: the span from 0 s to 0.0199 s");
+  check_expectation_rejected("moving: 1, after_s: 3, by_s: 2", "by_s: the span from 3 s to 2 s is too short");
+  check_expectation_rejected("takeover: true, after_s: 3, within_s: 0.01", "within_s: the span from 3 s");
   check_expectation_rejected("at_rest: 1, after_s: 19.9, within_s: 1",
                              "20.9 s is after the time limit of 20 s");
   check_expectation_rejected("at_rest: 1, within_s: 5, for_s: 16", "21 s is after the time limit of 20 s");
   check_expectation_rejected("at_rest: 1, after_fault: 0, within_s: 1", "the scenario has no faults");
-  check_expectation_rejected("max_speed_mps: 1, from_s: 3, to_s: 3", "to_s: expected more than from_s");
+  check_expectation_rejected("max_speed_mps: 1, from_s: 3, to_s: 3",
+                             "to_s: the span from 3 s to 3 s is too short");
+  check_expectation_rejected("max_speed_mps: 1, from_s: 3, to_s: 3.01", "to_s: the span from 3 s to 3.01 s");
   check_expectation_rejected("named: 1, within_s: 1", "key \"as\" is missing");
   check_expectation_rejected("named: 1, as: lost, within_s: 1", "as: expected one of: missing, quarantined");
   check_expectation_rejected("mismatch: operator", "mismatch: expected one of");
