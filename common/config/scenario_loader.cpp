@@ -78,6 +78,19 @@ void read_field_and_limits(YamlMap& map, Scenario& scenario) {
   map.read("time_limit_s", {0.1, kMaxTimeLimit_s}, scenario.time_limit_s);
 }
 
+/// The line of the key that makes the margin too small: its own or, by default, that of a key that raises the
+/// safety budget.
+int line_of_budget(YamlMap& map, const Scenario& scenario) {
+  const Scenario defaults;
+  if (map.find("margin_m").IsDefined()) return map.location_of("margin_m").line;
+  if (scenario.limits.speed_mps > defaults.limits.speed_mps)
+    return YamlMap(map.find("limits"), map.location_of("limits")).location_of("speed_mps").line;
+  return map
+      .location_of(scenario.tracking_bound_m > defaults.tracking_bound_m ? "tracking_bound_m"
+                                                                         : "clock_bound_s")
+      .line;
+}
+
 void read_budget(YamlMap& map, Scenario& scenario) {
   map.read("margin_m", {0, 1}, scenario.margin_m);
   map.read("tracking_bound_m", {0.0005, 1}, scenario.tracking_bound_m);
@@ -85,11 +98,13 @@ void read_budget(YamlMap& map, Scenario& scenario) {
   const SafetyBudget budget = budget_of(scenario);
   constexpr double kRounding_m = 1e-9;
   if (scenario.margin_m >= budget.required_margin_m() - kRounding_m) return;
-  map.location_of("margin_m")
-      .fail(fmt::format("{:g} m is less than the safety budget: expected at least {:.6g} m (2 x "
-                        "tracking_bound_m {:g} + 4 x clock_bound_s {:g} x limits.speed_mps {:g})",
-                        scenario.margin_m, budget.required_margin_m(), budget.tracking_bound_m,
-                        budget.clock_bound_s, budget.speed_mps));
+  YamlLocation location = map.location_of("margin_m");
+  location.line = line_of_budget(map, scenario);
+  location.fail(
+      fmt::format("{:g} m is less than the safety budget: expected at least {:.6g} m (2 x "
+                  "tracking_bound_m {:g} + 4 x clock_bound_s {:g} x limits.speed_mps {:g})",
+                  scenario.margin_m, budget.required_margin_m(), budget.tracking_bound_m,
+                  budget.clock_bound_s, budget.speed_mps));
 }
 
 void read_images(YamlMap& map, std::optional<ImageSpec>& images) {

@@ -37,6 +37,7 @@ void read_goals(YamlMap& map, PlacedRobot& placed) {
                 list_schema(tuple_schema({coordinate, coordinate, heading_schema()}, 2), 1, kMaxGoals));
   }
   if (!list.IsDefined()) return;
+  refuse_single_point(list, location);
   for (const YAML::Node& element : list_from(list, location, kMaxGoals)) {
     const YamlLocation goal_location = location.of(element, location.what);
     const auto numbers = numbers_from(element, goal_location, 2, 3, kCoordinate_m);

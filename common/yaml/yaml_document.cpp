@@ -106,7 +106,7 @@ std::string read_yaml_file(const std::string& path, const std::string& expected)
   try {
     return read_file(path, kMaxBytes);
   } catch (const std::runtime_error& error) {
-    throw ConfigError(path, 1,
+    throw ConfigError(path,
                       fmt::format("cannot read the file ({}), expected {} in YAML", error.what(), expected));
   }
 }

@@ -9,6 +9,7 @@
 #include <set>
 #include <string_view>
 
+#include "common/process/similar_name.hpp"
 #include "common/yaml/config_error.hpp"
 #include "common/yaml/heading.hpp"
 #include "common/yaml/plus_sign.hpp"
@@ -53,7 +54,8 @@ std::string name_from(const YAML::Node& node, const YamlLocation& location,
                       std::span<const std::string_view> names) {
   const std::string name = text_from(node, location);
   if (std::ranges::find(names, name) == names.end())
-    location.fail(fmt::format("expected one of {}, got \"{}\"", fmt::join(names, ", "), name.substr(0, 40)));
+    location.fail(fmt::format("expected one of {}, got \"{}\"{}", fmt::join(names, ", "), name.substr(0, 40),
+                              did_you_mean(name, std::vector<std::string>(names.begin(), names.end()))));
   return name;
 }
 
@@ -125,6 +127,12 @@ std::vector<YAML::Node> list_from(const YAML::Node& node, const YamlLocation& lo
   if (node.size() > max_count)
     location.fail(fmt::format("expected at most {} elements, got {}", max_count, node.size()));
   return {node.begin(), node.end()};
+}
+
+void refuse_single_point(const YAML::Node& list, const YamlLocation& location) {
+  if (list.IsSequence() && list.size() > 0 && list[0].IsScalar())
+    location.fail(fmt::format("expected a list of points, e.g. [[3, 1]], got {} in place of the first",
+                              described(list[0])));
 }
 
 YamlMap::YamlMap(const YAML::Node& node, YamlLocation location)
@@ -257,6 +265,7 @@ std::vector<Vec2> YamlMap::points(const std::string& key, std::size_t min_count,
   std::vector<Vec2> points;
   if (!node.IsDefined()) return points;
   const YamlLocation location = location_of(key);
+  refuse_single_point(node, location);
   for (const YAML::Node& element : list_from(node, location, max_count)) {
     const auto numbers = numbers_from(element, location.of(element, location.what), 2, 2, range);
     points.emplace_back(numbers[0], numbers[1]);
@@ -282,12 +291,18 @@ std::vector<std::string> YamlMap::names(const std::string& key, std::span<const 
   return found;
 }
 
+std::vector<std::string> YamlMap::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& entry : node_) keys.push_back(entry.first.Scalar());
+  return keys;
+}
+
 void YamlMap::finish() const {
   for (const auto& entry : node_) {
     if (std::find(known_.begin(), known_.end(), entry.first.Scalar()) != known_.end()) continue;
     location_.of(entry.first, location_.what)
-        .fail(fmt::format("unknown key \"{}\", expected one of: {}", entry.first.Scalar().substr(0, 40),
-                          fmt::join(known_, ", ")));
+        .fail(fmt::format("unknown key \"{}\", expected one of: {}{}", entry.first.Scalar().substr(0, 40),
+                          fmt::join(known_, ", "), did_you_mean(entry.first.Scalar(), known_)));
   }
 }
 

@@ -46,6 +46,9 @@ std::vector<double> numbers_from(const YAML::Node& node, const YamlLocation& loc
 [[nodiscard]] std::vector<YAML::Node> list_from(const YAML::Node& node, const YamlLocation& location,
                                                 std::size_t max_count);
 
+/// Fails for a list of numbers where a list of such lists is expected: "goals_m: [3, 1]" for "[[3, 1]]".
+void refuse_single_point(const YAML::Node& list, const YamlLocation& location);
+
 /// Reads a YAML mapping strictly. A reader leaves the value unchanged if the key is missing. finish() rejects
 /// all keys that were not read; the constructor rejects duplicate keys. All functions throw ConfigError.
 ///
@@ -86,6 +89,8 @@ class YamlMap {
   /// The location of the key's value, or of the whole mapping if the key is missing.
   YamlLocation location_of(const std::string& key);
   const YamlLocation& location() const { return location_; }
+  /// The keys that the mapping has, known or not.
+  std::vector<std::string> keys() const;
   void finish() const;
 
   /// The schema that this map describes; null if it reads a file.

@@ -98,6 +98,7 @@ GoalLists parse_goal_lists(const std::string& text, const std::string& file_name
     const YamlLocation of_robot = location.of(entry.first, fmt::format("robot {}", robot));
     if (lists.contains(robot)) of_robot.fail("given twice");
     std::vector<Goal>& goals = lists[robot];
+    refuse_single_point(entry.second, of_robot);
     for (const YAML::Node& element : list_from(entry.second, of_robot, msg::MAX_ORDER_POSES))
       goals.push_back(goal_from(element, of_robot.of(element, of_robot.what)));
     if (goals.empty()) of_robot.fail("expected at least one goal");

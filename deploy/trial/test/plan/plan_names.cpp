@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "common/process/similar_name.hpp"
 #include "common/yaml/yaml_schema.hpp"
 
 namespace sidestep {
@@ -24,8 +25,21 @@ std::string process_from_node(const YAML::Node& node, const YamlLocation& locati
                               const std::vector<std::string>& names) {
   const std::string name = text_from(node, location);
   if (std::ranges::find(names, name) == names.end())
-    location.fail(fmt::format("expected one of: {}; got \"{}\"", fmt::join(names, ", "), name.substr(0, 40)));
+    location.fail(fmt::format("expected one of: {}; got \"{}\"{}", fmt::join(names, ", "), name.substr(0, 40),
+                              did_you_mean(name, names)));
   return name;
+}
+
+/// Throws ConfigError for a mapping that has none of the keys, and names those that it has.
+[[noreturn]] void fail_without_key(YamlMap& map, const std::vector<std::string>& keys, const char* what) {
+  const std::vector<std::string> given = map.keys();
+  std::string hint;
+  for (const std::string& key : given) {
+    if (hint.empty()) hint = did_you_mean(key.substr(0, 40), keys);
+  }
+  map.location().fail(fmt::format("expected {}: one of the keys {}{}{}{}", what, fmt::join(keys, ", "),
+                                  given.empty() ? "" : "; got ",
+                                  fmt::format("{}", fmt::join(given, ", ")).substr(0, 80), hint));
 }
 
 /// A valid value for a map that is made from a schema and has no content; empty if there is no name.
@@ -42,8 +56,7 @@ std::string only_key_of(YamlMap& map, const std::vector<std::string>& keys, cons
     if (map.find(key).IsDefined()) found.push_back(key);
   }
   if (found.size() == 1) return found.front();
-  if (found.empty())
-    map.location().fail(fmt::format("expected {}: one of the keys {}", what, fmt::join(keys, ", ")));
+  if (found.empty()) fail_without_key(map, keys, what);
   map.location().fail(fmt::format("expected {}, got {}", what, fmt::join(found, " and ")));
 }
 

@@ -19,11 +19,14 @@ TEST_CASE("a margin below the safety budget is rejected with the required margin
   CHECK(budget_of(Scenario{}).required_margin_m() == Approx(0.014).epsilon(1e-12));
   CHECK(error_of(kRobot + "margin_m: 0.014\n") == "accepted");
   check_rejected(kRobot + "margin_m: 0.0139\n", 2, "expected at least 0.014 m");
-  check_rejected(kRobot + "\nlimits: {speed_mps: 3}\n", 1,
+  check_rejected(kRobot + "\nlimits: {speed_mps: 3}\n", 3,
                  "margin_m: 0.014 m is less than the safety budget");
   check_rejected(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.015\n", 3, "expected at least 0.016 m");
   CHECK(error_of(kRobot + "limits: {speed_mps: 3}\nmargin_m: 0.016\n") == "accepted");
-  check_rejected(kRobot + "tracking_bound_m: 0.006\n", 1, "expected at least 0.016 m");
+  check_rejected(kRobot + "tracking_bound_m: 0.006\n", 2, "expected at least 0.016 m");
+  check_rejected(kRobot + "limits:\n  deceleration_mps2: 4\n  speed_mps: 3\n", 4,
+                 "expected at least 0.016 m");
+  check_rejected(kRobot + "tracking_bound_m: 0.005\nclock_bound_s: 0.002\n", 3, "expected at least 0.026 m");
   check_rejected(kRobot + "clock_bound_s: 0.002\nmargin_m: 0.025\n", 3, "expected at least 0.026 m");
   CHECK(error_of(kRobot + "clock_bound_s: 0\nmargin_m: 0.01\n") == "accepted");
   check_rejected(kRobot + "tracking_bound_m: 0\n", 2, "tracking_bound_m: expected 0.0005 to 1");
@@ -106,6 +109,7 @@ TEST_CASE("a robot that starts absent may share its start with another robot") {
 
 TEST_CASE("unknown and duplicate keys are rejected with their line") {
   check_rejected(kRobot + "margin: 0.1\n", 2, "unknown key \"margin\", expected one of: ");
+  check_rejected(kRobot + "margin: 0.1\n", 2, "; did you mean margin_m?");
   check_rejected(kRobot + "vision:\n  rate_hz: 60\n  dely_ms: 3\n", 4, "unknown key \"dely_ms\"");
   check_rejected("robots:\n  - id: 0\n    start_m: [0, 0]\n    goals_m: [[1, 0]]\n    colour: red\n", 5,
                  "unknown key \"colour\"");
@@ -135,7 +139,9 @@ TEST_CASE("values of the wrong type are rejected with their line") {
   check_rejected("robots:\n- {id: 0, team: red, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2,
                  "robots[0].team: expected one of blue, yellow, got \"red\"");
   check_rejected("robots:\n- {id: 0, start_m: [0, 0], goals_m: [1, 0]}\n", 2,
-                 "expected a list of 2 to 3 numbers");
+                 "robots[0].goals_m: expected a list of points, e.g. [[3, 1]], got \"1\"");
+  check_rejected("robots:\n- {id: 0, start_m: [0, 0], goals_m: [[1, 0], 2]}\n", 2,
+                 "expected a list of 2 to 3 numbers, got \"2\"");
   check_rejected("robots:\n- id: 0\n  start_m: [0, 0]\n  goals_m:\n  - [1, 0]\n  - [1, 0, 0, 0]\n", 6,
                  "got 4");
   check_rejected("robots: 4\n", 1, "expected a list");
@@ -356,8 +362,8 @@ TEST_CASE("unreadable files are rejected") {
     return "accepted";
   };
   CHECK_THAT(load_error("/nowhere/x.yaml"),
-             StartsWith("/nowhere/x.yaml:1: cannot read the file (No such file"));
-  CHECK_THAT(load_error("/tmp"), StartsWith("/tmp:1: cannot read the file (it is a directory"));
+             StartsWith("/nowhere/x.yaml: cannot read the file (No such file"));
+  CHECK_THAT(load_error("/tmp"), StartsWith("/tmp: cannot read the file (it is a directory"));
 }
 
 TEST_CASE("a mutated scenario either loads or is rejected with a ConfigError") {

@@ -49,6 +49,7 @@ TEST_CASE("a file gives goals to several robots, and an error in it is reported 
       {"", "goals.yaml"},
       {"- 1\n", "expected robots with their goals"},
       {"3: []\n", "goals.yaml:1: robot 3: expected at least one goal"},
+      {"3: [1, 2]\n", "goals.yaml:1: robot 3: expected a list of points, e.g. [[3, 1]], got \"1\""},
       {"3: [[1, 2]]\n4: [[1]]\n", "goals.yaml:2: "},
       {"3: [[1, 2]]\n3: [[1, 2]]\n", "goals.yaml:2: "},
       {"x: [[1, 2]]\n", "goals.yaml:1: "},

@@ -219,6 +219,9 @@ TEST_CASE("the shortest span that is long enough for a sample of ground truth is
 
 TEST_CASE("invalid expectations are rejected with their line") {
   check_expectation_rejected("no_contacts: all", "expected an expectation: one of the keys no_contact");
+  check_expectation_rejected("no_contacts: all", "; got no_contacts; did you mean no_contact?");
+  check_expectation_rejected("at_res: 1, within_s: 1", "; got at_res, within_s; did you mean at_rest?");
+  check_fault_rejected("kil: agent 1", "; got at_s, kil; did you mean kill?");
   check_expectation_rejected("no_contact: some", "no_contact: expected a whole number");
   check_expectation_rejected("no_contact: []", "expected all, a robot, or a list of robots");
   check_expectation_rejected("no_violations: false", "no_violations: expected true");
