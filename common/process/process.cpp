@@ -9,6 +9,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/file/console.hpp"
 #include "common/log/log.hpp"
+#include "common/messaging/dds/missing_interface.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/log_option.hpp"
 #include "common/process/process_identity.hpp"
@@ -61,9 +62,13 @@ void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings) {
 
 int run_and_report_errors(const std::string& name, const std::function<int()>& work) {
   const auto work_and_print = [&] {
-    const int exit_code = work();
-    finish_output();
-    return exit_code;
+    try {
+      const int exit_code = work();
+      finish_output();
+      return exit_code;
+    } catch (const MissingInterface& error) {
+      throw std::invalid_argument(error.what());
+    }
   };
   return run_reporting(work_and_print,
                        [&](const std::string& problem) { print_to(stderr, "{}: {}\n", name, problem); });

@@ -62,7 +62,8 @@ void add_dds_options(const CliCommand& app, DdsSettings& settings);
 void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings);
 
 /// Calls `work` and returns its exit code. Prints exceptions on stderr and returns kExitUsage for
-/// ConfigError and std::invalid_argument, kExitFailure for all others, and if stdout could not be written.
+/// ConfigError, std::invalid_argument and MissingInterface, kExitFailure for all others, and if stdout could
+/// not be written.
 int run_and_report_errors(const std::string& name, const std::function<int()>& work);
 
 }  // namespace sidestep

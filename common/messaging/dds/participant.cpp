@@ -19,6 +19,7 @@
 #include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/library_log.hpp"
+#include "common/messaging/dds/missing_interface.hpp"
 #include "common/messaging/dds/open_network.hpp"
 #include "common/messaging/dds/transport.hpp"
 #include "common/messaging/reliability.hpp"
@@ -78,7 +79,7 @@ void check(const DdsSettings& settings) {
       "--interface: expected 'all' or an address of this machine ({}), got '{}'", own, settings.interface);
   in_addr address{};
   if (inet_pton(AF_INET, settings.interface.c_str(), &address) != 1) throw std::invalid_argument(problem);
-  throw std::runtime_error(problem);  // the interface may appear later: a service tries again
+  throw MissingInterface(problem);
 }
 
 ParticipantId id_of(const fast_dds::rtps::GuidPrefix_t& prefix) {

@@ -11,6 +11,7 @@
 #include "common/file/console.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/host_name.hpp"
+#include "common/process/network_text.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "common/protocol/process_names.hpp"
@@ -99,7 +100,7 @@ int show_clocks(const ClockOptions& options) {
     call_periodically(bus, kTablePeriod, refresh);
     bus.run();
   }
-  if (rows().empty()) fmt::print(stderr, "sidestep: no process is heard on this domain and interface\n");
+  if (rows().empty()) fmt::print(stderr, "sidestep: no process is heard {}\n", network_text(options.dds));
   return all_agree(rows()) ? 0 : kExitFailure;
 }
 

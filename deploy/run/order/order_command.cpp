@@ -16,6 +16,7 @@
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
+#include "common/process/network_text.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "common/protocol/client_text.hpp"
@@ -84,7 +85,7 @@ int show_status(const OrderOptions& options) {
     bus.run();
   }
   if (!client.reports().empty()) return 0;
-  fmt::print(stderr, "sidestep: no agent is heard on this domain and interface\n");
+  fmt::print(stderr, "sidestep: no agent is heard {}\n", network_text(options.dds));
   return kExitFailure;
 }
 

@@ -12,6 +12,7 @@
 #include "common/messaging/robot_notices.hpp"
 #include "common/motion/version.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/network_text.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/trial/fault/attestation_exchange.hpp"
@@ -71,7 +72,7 @@ int attest(const AttestOptions& options) {
     return 0;
   }
   const std::string reason =
-      attestation.epoch() ? exchange.reason() : "no active coordinator on this domain and interface";
+      attestation.epoch() ? exchange.reason() : "no active coordinator answers " + network_text(options.dds);
   fmt::print(stderr, "sidestep: could not attest the absence of robot {}: {}\n", options.robot, reason);
   return kExitFailure;
 }

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdexcept>
 
+#include "common/messaging/dds/missing_interface.hpp"
 #include "common/process/command_line.hpp"
 #include "tests/catch.hpp"
 #include "tests/test_keys.hpp"
@@ -37,6 +38,12 @@ Program test_program() {
   program.process = [] { return std::uint32_t{1}; };
   program.start = [](DdsBus&, const Scenario&, Incarnation) { return RunningNodes{}; };
   return program;
+}
+
+TEST_CASE("an interface that this machine lacks is wrong usage of a command") {
+  CHECK(run_and_report_errors("test", []() -> int { throw MissingInterface("no such address"); }) ==
+        kExitUsage);
+  CHECK(run_and_report_errors("test", []() -> int { throw std::runtime_error("no"); }) == kExitFailure);
 }
 
 TEST_CASE("invalid usage and an invalid scenario exit with 2, --help exits with 0, and no node starts") {
