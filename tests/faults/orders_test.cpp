@@ -111,7 +111,9 @@ TEST_CASE(
   check_random_goals(minutes(10));
 }
 
-TEST_CASE("a run on demand goes on when an agent dies while all robots are at rest") {
+TEST_CASE(
+    "a run on demand goes on when an agent dies while all robots are at rest, and orders outlast their "
+    "commands") {
   LaunchedRun run(
       "field: {length_m: 6, width_m: 5}\nrobots:\n  - {id: 0, start_m: [-2, 0]}\n  - {id: 1, start_m: [0, "
       "0]}\n"
@@ -122,9 +124,18 @@ TEST_CASE("a run on demand goes on when an agent dies while all robots are at re
   // Longer than after a death that ends a run.
   const Time killed = run.bus().now();
   CHECK(run.wait_until([&] { return run.bus().now() - killed > seconds(4); }));
-  std::vector<std::string> go{"go", "0", "-2,1", "--wait", "--timeout", "20"};
-  for (const std::string& argument : run.dds_arguments()) go.push_back(argument);
-  CHECK(run.command(go) == "exit code 0");
+  const auto on_run = [&](std::vector<std::string> arguments) {
+    for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
+    return arguments;
+  };
+  CHECK(run.command(on_run({"go", "0", "-2,1", "--wait", "--timeout", "20"})) == "exit code 0");
+  CHECK(run.command(on_run({"hold", "1"})) == "exit code 0");
+  const pid_t waiting = run.start("go", "sidestep", on_run({"go", "1", "0,1", "--wait"}));
+  REQUIRE(run.wait_until([&] { return run.printed("go 1: not driving: it is held by the operator"); }));
+  REQUIRE(kill(waiting, SIGINT) == 0);
+  REQUIRE(run.wait_until([&] { return run.exit_reason("go").has_value(); }));
+  CHECK(run.exit_reason("go") == "exit code 1");
+  CHECK(run.printed("the order of robot 1 stays in force; `sidestep cancel 1` ends it"));
   REQUIRE(kill(run.pid(), SIGINT) == 0);
   CHECK(run.wait_for_end() == "exit code 0");
   INFO(run.output());
@@ -186,6 +197,7 @@ TEST_CASE(
   CHECK(command({"go", "0", "0,0", "--wait", "--timeout", "3"}) == "exit code 1");
   CHECK(run.printed("go 0: not driving: it is held by the operator"));
   CHECK(run.printed("after 3 s: go 0: not driving: it is held by the operator"));
+  CHECK(run.printed("the order of robot 0 stays in force; `sidestep cancel 0` ends it"));
   CHECK(command({"resume", "all", "--client", "stranger"}) == "exit code 0");
   CHECK(run.printed("still held: all robots by the operator"));
   CHECK(command({"resume", "all"}) == "exit code 0");

@@ -5,9 +5,11 @@
 #include <chrono>
 #include <cstdio>
 #include <fmt/format.h>
+#include <set>
 
 #include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
+#include "common/process/network_text.hpp"
 #include "common/protocol/senders.hpp"
 #include "deploy/run/order/order_text.hpp"
 
@@ -41,7 +43,10 @@ DdsSettings dds_of(const OrderOptions& options) {
 OrderSession::OrderSession(const OrderOptions& options)
     : options_(options),
       bus_(dds_of(options)),
-      stop_signals_([this] { bus_.stop(); }),
+      stop_signals_([this] {
+        is_interrupted_ = true;
+        bus_.stop();
+      }),
       client_(bus_, client_of(options), options.client) {
   client_.on_change([this](const SentOrder& sent) { on_change(sent); });
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) {
@@ -111,13 +116,19 @@ int OrderSession::finish(const std::vector<OrderHandle>& handles) {
   }
   const Time deadline = options_.timeout_s ? bus_.now() + from_seconds(*options_.timeout_s) : Time::max();
   bus_.run_until(std::min(deadline, bus_.now() + kAnswerTimeout));
-  if (options_.waits && are_all(is_answered) && !are_all(is_over)) bus_.run_until(deadline);
+  if (options_.waits && are_all(is_answered) && !are_all(is_over) && !is_interrupted_)
+    bus_.run_until(deadline);
   if (!are_all(is_over) && bus_.now() >= deadline) {
     print_timeout();
     return kExitFailure;
   }
   if (!are_all(is_answered)) {
-    fmt::print(stderr, "sidestep: {}\n", unconfirmed_text());
+    fmt::print(stderr, "sidestep: {}\n",
+               is_interrupted_ ? "the order may take effect, but is not confirmed yet" : unconfirmed_text());
+    return kExitFailure;
+  }
+  if (options_.waits && !are_all(is_over)) {
+    fmt::print(stderr, "sidestep: {}\n", open_text());
     return kExitFailure;
   }
   const auto is_good = [this](const SentOrder& sent) {
@@ -143,11 +154,20 @@ void OrderSession::print_timeout() const {
         watch_ && is_answered(sent) ? watch_->hindrances(sent.order.robot) : std::vector<Hindrance>();
     fmt::print(stderr, "sidestep: after {:g} s: {}\n", *options_.timeout_s, to_line(sent, hindrances));
   }
-  const bool is_any_answered = std::ranges::any_of(
-      handles_, [this](OrderHandle handle) { return is_answered(*client_.find(handle)); });
-  fmt::print(
-      stderr, "sidestep: {}\n",
-      is_any_answered ? "the robots drive on; `sidestep cancel ROBOT` ends an order" : unconfirmed_text());
+  const std::string open = open_text();
+  fmt::print(stderr, "sidestep: {}\n", open.empty() ? unconfirmed_text() : open);
+}
+
+std::string OrderSession::open_text() const {
+  std::set<RobotId> driving, waiting;
+  for (const OrderHandle handle : handles_) {
+    const SentOrder& sent = *client_.find(handle);
+    if (!is_answered(sent) || is_over(sent)) continue;
+    const RobotId robot = sent.order.robot;
+    const bool waits = sent.phase == OrderPhase::kBlocked || (watch_ && !watch_->hindrances(robot).empty());
+    (waits ? waiting : driving).insert(robot);
+  }
+  return open_orders_text(driving, waiting, options_.client);
 }
 
 std::string OrderSession::unconfirmed_text() const {
@@ -155,7 +175,7 @@ std::string OrderSession::unconfirmed_text() const {
              ? "the order may take effect, but is not confirmed: the coordinator waits for an agent that "
                "remembers the order (for a hold: the agent of a held robot). Check that such an agent is "
                "running"
-             : "no active coordinator answers on this domain and interface";
+             : "no active coordinator answers " + network_text(options_.dds);
 }
 
 }  // namespace sidestep

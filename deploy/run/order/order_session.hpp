@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <optional>
 #include <string>
@@ -71,10 +72,13 @@ class OrderSession {
   void print_remaining_holds(const SentOrder& resume) const;
   /// Says which orders are not over, and that they stay in force.
   void print_timeout() const;
+  /// What becomes of the orders that were accepted and are not over; empty if there are none.
+  std::string open_text() const;
   std::string unconfirmed_text() const;
 
   const OrderOptions& options_;
   DdsBus bus_;
+  std::atomic<bool> is_interrupted_{false};  // set by a signal handler
   StopSignals stop_signals_;
   OrderClient client_;
   std::optional<RobotWatch> watch_;  // only for finish() that waits for robots

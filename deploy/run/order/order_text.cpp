@@ -102,6 +102,24 @@ std::string to_line(const SentOrder& sent, const std::vector<Hindrance>& hindran
   return line;
 }
 
+std::string open_orders_text(const std::set<RobotId>& driving, const std::set<RobotId>& waiting,
+                             const std::string& client) {
+  const auto robots = [](const std::set<RobotId>& ids) {
+    return fmt::format("robot{} {}", ids.size() > 1 ? "s" : "", fmt::join(ids, ", "));
+  };
+  std::vector<std::string> parts;
+  if (!driving.empty()) parts.push_back(robots(driving) + (driving.size() > 1 ? " drive on" : " drives on"));
+  if (!waiting.empty()) {
+    parts.push_back(fmt::format("the order{} of {}", waiting.size() > 1 ? "s" : "", robots(waiting)) +
+                    (waiting.size() > 1 ? " stay in force" : " stays in force"));
+  }
+  if (parts.empty()) return "";
+  const bool is_one = driving.size() + waiting.size() == 1;
+  const std::string robot = is_one ? std::to_string(*(driving.empty() ? waiting : driving).begin()) : "ROBOT";
+  return fmt::format("{}; `sidestep cancel {}{}` ends {}", fmt::join(parts, ", and "), robot,
+                     client.empty() ? "" : " --client " + client, is_one ? "it" : "an order");
+}
+
 std::string to_table(const std::map<RobotId, OrderReport>& reports,
                      const std::map<RobotId, std::vector<Hindrance>>& hindrances) {
   constexpr const char* kHeading = "ordered by";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,11 @@ namespace sidestep {
 
 /// Which robots are still held after a resume, by whom, and who can resume them.
 [[nodiscard]] std::string still_held_text(const std::vector<Order>& holds);
+
+/// What becomes of orders for which nobody waits any longer, and how to end them. `waiting` are robots that
+/// do not drive; `client` is empty for the operator. Empty without robots.
+[[nodiscard]] std::string open_orders_text(const std::set<RobotId>& driving, const std::set<RobotId>& waiting,
+                                           const std::string& client);
 
 /// A table of the robots' activities, with one line per robot.
 [[nodiscard]] std::string to_table(const std::map<RobotId, OrderReport>& reports,

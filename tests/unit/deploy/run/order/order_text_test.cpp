@@ -18,6 +18,18 @@ TEST_CASE("an order is described by its robot and a zone by its number") {
   CHECK(line(msg::OrderKind::ORDER_REMOVE_ZONE, kAllRobots) == "remove zone 7: accepted");
 }
 
+TEST_CASE("orders for which nobody waits any longer stay, and the text says how to end them") {
+  CHECK(open_orders_text({3}, {}, "") == "robot 3 drives on; `sidestep cancel 3` ends it");
+  CHECK(open_orders_text({}, {3}, "bob") ==
+        "the order of robot 3 stays in force; `sidestep cancel 3 --client bob` ends it");
+  CHECK(
+      open_orders_text({1, 2}, {3}, "") ==
+      "robots 1, 2 drive on, and the order of robot 3 stays in force; `sidestep cancel ROBOT` ends an order");
+  CHECK(open_orders_text({}, {1, 2}, "") ==
+        "the orders of robots 1, 2 stay in force; `sidestep cancel ROBOT` ends an order");
+  CHECK(open_orders_text({}, {}, "").empty());
+}
+
 TEST_CASE("the table names who has ordered a robot, and a robot without an order has none") {
   std::map<RobotId, OrderReport> reports;
   reports[0] = {0, static_cast<ClientId>(Sender::kOperator), 5, {msg::OrderState::ORDER_ARRIVED, 1}};
