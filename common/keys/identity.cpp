@@ -29,6 +29,9 @@ bool is_numbered(Role role) {
   return role == Role::kAgent || role == Role::kCoordinator || role == Role::kRobot;
 }
 
+/// How many numbers a numbered role has.
+std::uint32_t count_of(Role role) { return role == Role::kCoordinator ? kMaxCoordinators : kMaxRobots; }
+
 std::optional<std::uint32_t> parse_number(std::string_view digits, std::uint32_t count) {
   std::uint32_t number = 0;
   const char* const end = digits.data() + digits.size();
@@ -41,7 +44,7 @@ std::optional<std::uint32_t> parse_number(std::string_view digits, std::uint32_t
 
 /// Parses "3" or, for robots, "0-10".
 bool parse_numbers(std::string_view text, Identity& identity) {
-  const std::uint32_t count = identity.role == Role::kCoordinator ? kMaxCoordinators : kMaxRobots;
+  const std::uint32_t count = count_of(identity.role);
   const auto dash = text.find('-');
   if (dash != std::string_view::npos && identity.role != Role::kRobot) return false;
   const auto first = parse_number(text.substr(0, dash), count);
@@ -83,6 +86,18 @@ std::string identity_forms() {
   return "'agent 3', 'coordinator 1', vision, simulator, 'robot 3', 'robot 0-10', referee, 'client NAME', "
          "operator, "
          "viewer or judge";
+}
+
+std::string expected_identity(const std::string& text) {
+  const std::string word = text.substr(0, text.find(' '));
+  const auto* const found =
+      std::ranges::find(kWords, word, [](const RoleWord& w) { return std::string(w.word); });
+  if (found != kWords.end() && found->role == Role::kClient)
+    return fmt::format(
+        "'client NAME' with a name of 1 to {} letters, digits, '-' and '_' that does not begin with '-'",
+        msg::MAX_CLIENT_NAME);
+  if (found == kWords.end() || !is_numbered(found->role)) return identity_forms();
+  return fmt::format("'{} N' with a number from 0 to {}", word, count_of(found->role) - 1);
 }
 
 std::string to_text(const Identity& identity) {

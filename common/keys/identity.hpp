@@ -26,6 +26,9 @@ struct Identity {
 [[nodiscard]] std::optional<Identity> parse_identity(const std::string& text);
 /// Describes what parse_identity() accepts, for error messages.
 [[nodiscard]] std::string identity_forms();
+/// What parse_identity() accepts instead of a text that it does not accept: the form that begins with the
+/// text's first word, with its limits; all forms if none does.
+[[nodiscard]] std::string expected_identity(const std::string& text);
 [[nodiscard]] std::string to_text(const Identity& identity);
 /// The name of the identity's key folder, for example "agent-3".
 [[nodiscard]] std::string folder_name(const Identity& identity);

@@ -2,6 +2,7 @@
 #include "deploy/run/keys/key_list.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "common/process/command_line.hpp"
 
@@ -27,7 +28,7 @@ std::vector<Identity> split(const std::string& text) {
     result.push_back(*identity);
   }
   if (!range || result.size() != range->last - range->first + 1)
-    throw UsageError("expected " + identity_forms() + ", got '" + text + "'");
+    throw UsageError(fmt::format("expected {}, got '{}'", expected_identity(text), text));
   return result;
 }
 

@@ -22,6 +22,15 @@ TEST_CASE("an identity survives writing as text and parsing") {
   CHECK(folder_name(identity("robot 0-10")) == "robot-0-10");
 }
 
+TEST_CASE("the form that is expected instead of a text depends on its first word, and names the limits") {
+  CHECK(expected_identity("agent 5000") == "'agent N' with a number from 0 to 1023");
+  CHECK(expected_identity("robot") == "'robot N' with a number from 0 to 1023");
+  CHECK(expected_identity("coordinator 8") == "'coordinator N' with a number from 0 to 7");
+  CHECK_THAT(expected_identity("client a b"), StartsWith("'client NAME' with a name of 1 to 32 letters"));
+  CHECK(expected_identity("vision 1") == identity_forms());
+  CHECK(expected_identity("agnet 3") == identity_forms());
+}
+
 TEST_CASE("each identity has exactly one text form, and other texts are rejected") {
   for (const char* text : {"",
                            "agent",

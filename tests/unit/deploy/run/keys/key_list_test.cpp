@@ -39,6 +39,8 @@ TEST_CASE("text that is not an identity is named in the error") {
   }
   CHECK_THROWS_WITH(parse_key_list({"agnet", "3"}),
                     ContainsSubstring("got 'agnet'") && ContainsSubstring("'agent 3', "));
+  CHECK_THROWS_WITH(parse_key_list({"agent", "5000"}),
+                    ContainsSubstring("expected 'agent N' with a number from 0 to 1023, got 'agent 5000'"));
 }
 
 TEST_CASE("a scenario needs keys for its processes, robots, judges, viewers and operators") {
