@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -95,7 +96,8 @@ double number_in(const Json& body, const char* key, double min, double max, std:
 
 void require_known_keys(const Json& body, std::initializer_list<std::string_view> known) {
   for (const auto& [key, value] : body.items())
-    if (std::ranges::find(known, key) == known.end()) throw BodyError(fmt::format("{}: is unknown", key));
+    if (std::ranges::find(known, key) == known.end())
+      throw BodyError(fmt::format("{}: is unknown, expected {}", key, fmt::join(known, ", ")));
 }
 
 /// A list of points: two coordinates each, and a heading if `max_numbers` is 3.
@@ -171,6 +173,20 @@ WebResponse fault_response(RobotId robot, const std::optional<msg::DisturbanceRe
   return error_response(status, refusal_text(robot, *result));
 }
 
+/// The methods with which the path is a command; null if it is none.
+const char* methods_of(std::span<const std::string> path) {
+  constexpr std::array<std::string_view, 3> kForAll{"hold", "resume", "bookmark"};
+  constexpr std::array<std::string_view, 5> kForRobots{"order", "cancel", "hold", "resume", "fault"};
+  const auto is_in = [](const auto& names, const std::string& word) {
+    return std::ranges::find(names, word) != names.end();
+  };
+  if (path.size() == 1) return is_in(kForAll, path[0]) ? "POST" : nullptr;
+  if (path.size() == 2 && path[0] == "zones") return "POST or DELETE";
+  if (path.size() == 2 && path[0] == "recording")
+    return path[1] == "start" || path[1] == "stop" ? "POST" : nullptr;
+  return path.size() == 3 && path[0] == "robots" && is_in(kForRobots, path[2]) ? "POST" : nullptr;
+}
+
 WebResponse accepted(OrderHandle handle) { return json_response(200, {{"order", handle}}); }
 
 }  // namespace
@@ -187,6 +203,10 @@ bool ControlApi::respond(const WebRequest& request, const WebReply& reply) {
   const std::vector<std::string> path = parts_of(request.path);
   if (path.empty()) return false;
   if (request.method == "GET") {
+    if (const char* const method = methods_of(path)) {
+      reply(error_response(405, fmt::format("use {}", method)));
+      return true;
+    }
     if (path.size() != 2 || path[0] != "orders") return false;
     const auto handle = parse_number<OrderHandle>(path[1]);
     reply(handle ? order_state(*handle) : error_response(404, "expected the number of an order"));
@@ -208,7 +228,7 @@ std::optional<WebResponse> ControlApi::command(const WebRequest& request, std::s
                                                const WebReply& reply) {
   if (path.size() == 2 && path[0] == "zones")
     if (const auto number = parse_number<std::uint32_t>(path[1])) return command_zone(*number, request);
-  if (request.method != "POST") return error_response(405, "expected POST");
+  if (request.method != "POST") return error_response(405, "use POST");
   if (path.size() == 1 && path[0] == "hold") return accepted(client_.hold(kAllRobots));
   if (path.size() == 1 && path[0] == "resume") return accepted(client_.resume(kAllRobots));
   if (path.size() == 1 && path[0] == "bookmark") {
@@ -256,7 +276,7 @@ WebResponse ControlApi::command_robot(RobotId robot, const std::string& what, co
 
 WebResponse ControlApi::command_zone(std::uint32_t number, const WebRequest& request) {
   if (request.method == "DELETE") return remove_zone(number);
-  if (request.method != "POST") return error_response(405, "expected POST or DELETE");
+  if (request.method != "POST") return error_response(405, "use POST or DELETE");
   const Json json = parse_body(request.body);
   require_known_keys(json, {"corners", "radius_m", "speed_limit_mps"});
   Zone zone;

@@ -287,7 +287,7 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
         "goals[0][2]: expected a heading of -6.28 to 6.28 radians, got 90; 90 degrees are 1.571 radians");
   CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0, "x"]]})") ==
         "goals[0][2]: expected radians, got \"x\"");
-  CHECK(error("/api/robots/3/order", R"({"goal": [[0, 0]]})") == "goal: is unknown");
+  CHECK(error("/api/robots/3/order", R"({"goal": [[0, 0]]})") == "goal: is unknown, expected goals");
   CHECK(error("/api/robots/x/order", R"({"goals": [[0, 0]]})") == "there is no robot x");
   CHECK(error("/api/robots/-1/order", R"({"goals": [[0, 0]]})") == "there is no robot -1");
   CHECK(error("/api/robots/3/dance", "{}") == "robots have no dance");
@@ -295,16 +295,25 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   CHECK(error("/api/robots/3/fault", R"({"kind": "push"})") == "vx_mps: is missing");
   CHECK(error("/api/robots/3/fault", R"({"kind": "push", "vx_mps": 10.1, "vy_mps": 0})") ==
         "vx_mps: expected a number from -10 to 10, got 10.1");
-  CHECK(error("/api/zones/1", R"({"corners": [[0, 0]], "radius": 1})") == "radius: is unknown");
+  CHECK(error("/api/zones/1", R"({"corners": [[0, 0]], "radius": 1})") ==
+        "radius: is unknown, expected corners, radius_m, speed_limit_mps");
   CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0]], "speed_limit": 1})") ==
-        "speed_limit: is unknown");
+        "speed_limit: is unknown, expected goals");
   CHECK(error("/api/zones/1", R"({"corners": [], "radius_m": 1})") ==
         "corners: expected a list of 1 to 16 points");
   CHECK(error("/api/nothing", "") == "there is no /api/nothing");
   CHECK(run.request("PUT", "/api/hold").status == 405);
   CHECK(run.request("GET", "/api/orders/77").status == 404);
   CHECK(run.request("GET", "/api/orders/x").status == 404);
-  CHECK_FALSE(run.api.respond({"GET", "/api/hold", {}, "", ""},
+  for (const char* path :
+       {"/api/robots/3/order", "/api/robots/3/fault", "/api/hold", "/api/recording/start"}) {
+    const WebResponse answer = run.request("GET", path);
+    CHECK(answer.status == 405);
+    CHECK(nlohmann::json::parse(answer.body)["error"] == "use POST");
+  }
+  CHECK(nlohmann::json::parse(run.request("GET", "/api/zones/1").body)["error"] == "use POST or DELETE");
+  CHECK(nlohmann::json::parse(run.request("PUT", "/api/zones/1").body)["error"] == "use POST or DELETE");
+  CHECK_FALSE(run.api.respond({"GET", "/api/robots/3/dance", {}, "", ""},
                               [](const WebResponse&) { FAIL_CHECK("an unknown path was answered"); }));
 }
 
