@@ -47,14 +47,6 @@ TestResult run_test(const FaultTest& test, std::uint64_t seed, const TestOptions
   return result;
 }
 
-void print_result(const TestResult& result) {
-  const std::vector<std::string> failures = result.failures();
-  print_to(stdout, "{}, {} expectations, {:.1f} s in {:.1f} s\n", failures.empty() ? "passed" : "FAILED",
-           result.expectations.size(), result.run_s, result.wall_s);
-  for (const std::string& failure : failures) print_to(stdout, "  {}\n", failure);
-  if (!failures.empty() && !result.log_file.empty()) print_to(stdout, "  log: {}\n", result.log_file);
-}
-
 /// Runs each test with each seed, until the user interrupts.
 std::vector<TestResult> run_all(const std::vector<FaultTest>& tests, const TestOptions& options,
                                 const DdsSettings& dds) {
@@ -63,7 +55,7 @@ std::vector<TestResult> run_all(const std::vector<FaultTest>& tests, const TestO
     for (std::uint64_t seed = options.seeds.first;; ++seed) {
       print_to(stdout, "{}, seed {}: ", test.file, seed);
       results.push_back(run_test(test, seed, options, dds));
-      print_result(results.back());
+      print_to(stdout, "{}", summary(results.back()));
       if (results.back().abort_reason == kInterrupted) return results;
       if (seed == options.seeds.last) break;
     }

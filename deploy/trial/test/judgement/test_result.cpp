@@ -21,6 +21,17 @@ std::vector<std::string> TestResult::failures() const {
   return lines;
 }
 
+std::string summary(const TestResult& result) {
+  const std::vector<std::string> failures = result.failures();
+  std::string text =
+      fmt::format("{}, {} expectations, {:.1f} s in {:.1f} s\n", failures.empty() ? "passed" : "FAILED",
+                  result.expectations.size(), result.run_s, result.wall_s);
+  for (const std::string& failure : failures) text += fmt::format("  {}\n", failure);
+  if (!result.report_file.empty()) text += fmt::format("  report: {}\n", result.report_file);
+  if (!result.log_file.empty()) text += fmt::format("  log: {}\n", result.log_file);
+  return text;
+}
+
 TestResult judged(const FaultTest& test, const RunOutcome& outcome) {
   TestResult result;
   result.file = test.file;
@@ -28,6 +39,7 @@ TestResult judged(const FaultTest& test, const RunOutcome& outcome) {
   result.abort_reason = outcome.history.end.abort_reason;
   result.problems = outcome.problems;
   result.log_file = outcome.log_file;
+  result.report_file = outcome.report_file;
   for (const Expectation& expectation : test.expectations) {
     result.expectations.push_back(
         {describe(expectation), expectation.line, judge(expectation, outcome.history)});

@@ -14,7 +14,8 @@ namespace sidestep {
 struct RunOutcome {
   RunHistory history;
   std::vector<FaultProblem> problems;
-  std::string log_file;  ///< log of the run's processes; empty: none
+  std::string log_file = {};     ///< log of the run's processes; empty: none
+  std::string report_file = {};  ///< empty: none was written
 };
 
 struct JudgedExpectation {
@@ -34,12 +35,16 @@ struct TestResult {
   std::string abort_reason;  ///< empty: the run was not aborted
   std::vector<FaultProblem> problems;
   std::vector<JudgedExpectation> expectations;
-  std::string log_file;
+  std::string log_file;     ///< empty: none
+  std::string report_file;  ///< empty: none
 
   bool passed() const { return failures().empty(); }
   /// One line for each reason why the test did not pass: the time, what was expected, and what was observed.
   std::vector<std::string> failures() const;
 };
+
+/// The verdict, the reasons for it, and where report and log are.
+[[nodiscard]] std::string summary(const TestResult& result);
 
 /// Judges the outcome by all expectations of the test. The caller fills in bus, seed and wall_s.
 [[nodiscard]] TestResult judged(const FaultTest& test, const RunOutcome& outcome);

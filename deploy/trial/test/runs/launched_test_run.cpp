@@ -69,6 +69,8 @@ class LaunchedTestRun {
     outcome.history.end = run_end(report, observer_, ended_at_.value_or(launcher_.bus().now()));
     if (const std::string problem = try_write_report(report, options_.report_file); !problem.empty())
       outcome.problems.push_back({outcome.history.end.at_s, "write the report: " + problem});
+    else
+      outcome.report_file = options_.report_file;
     return outcome;
   }
 

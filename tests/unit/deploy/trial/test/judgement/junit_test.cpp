@@ -14,6 +14,22 @@ TestResult passed_result() {
   return result;
 }
 
+TEST_CASE("a run over DDS names its report and log, whether it passed or not") {
+  TestResult result = passed_result();
+  result.run_s = 12;
+  result.wall_s = 1.5;
+  CHECK(summary(result) == "passed, 1 expectations, 12.0 s in 1.5 s\n");
+  result.report_file = "reports/a.json";
+  result.log_file = "reports/a.log";
+  CHECK(summary(result) ==
+        "passed, 1 expectations, 12.0 s in 1.5 s\n  report: reports/a.json\n  log: reports/a.log\n");
+  result.expectations[0].judgement = Judgement::failed(2.25, "robot 1 touched robot 2");
+  CHECK(summary(result) ==
+        "FAILED, 1 expectations, 12.0 s in 1.5 s\n"
+        "  at 2.250 s: line 7 expects no contact of all robots, but robot 1 touched robot 2\n"
+        "  report: reports/a.json\n  log: reports/a.log\n");
+}
+
 TEST_CASE("each result becomes one test case, with counts and times") {
   TestResult failed = passed_result(), broken = passed_result();
   failed.file = "b \"quoted\" & <odd>.yaml";
