@@ -13,6 +13,7 @@
 #include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/yaml/yaml_document.hpp"
 #include "deploy/audit/auditor.hpp"
 #include "deploy/inspect/record/mcap/mcap_reader.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
@@ -90,7 +91,8 @@ int audit_recording(const AuditOptions& options) {
 }
 
 int audit_live(const AuditOptions& options) {
-  const Scenario scenario = load_scenario(options.scenario_file);
+  const std::string& file = options.scenario_file;
+  const Scenario scenario = parse_scenario(read_yaml_file(file, "a recording, or a scenario"), file);
   Auditor auditor(scenario, AuditInput());
   print_violations(auditor, options.is_json);
   DdsBus bus(options.dds);
@@ -123,7 +125,8 @@ void add_audit_command(const CliCommand& root, std::function<int()>& action) {
   audit.on_parsed([options, scenario, &action] {
     if (options->recording_file.empty() && !scenario.is_given())
       throw UsageError("FILE is required: a scenario, or a recording");
-    if (is_mcap_file(options->scenario_file)) {
+    // A file with this ending that is missing or damaged is not taken for a scenario.
+    if (is_mcap_file(options->scenario_file) || options->scenario_file.ends_with(".mcap")) {
       if (!options->recording_file.empty())
         throw UsageError(fmt::format("FILE: expected a scenario beside --recording, but {} is a recording",
                                      options->scenario_file));
