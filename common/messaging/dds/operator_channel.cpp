@@ -2,10 +2,9 @@
 #include "common/messaging/dds/operator_channel.hpp"
 
 #include <algorithm>
-#include <mutex>
-#include <set>
 
 #include "common/messaging/dds/directory.hpp"
+#include "common/messaging/dds/matched_readers.hpp"
 #include "common/messaging/dds/participant.hpp"
 #include "common/messaging/dds/types.hpp"
 
@@ -20,26 +19,6 @@ DdsSettings operator_settings(DdsSettings settings) {
   settings.faults = false;
   return settings;
 }
-
-class MatchedReaders : public DataWriterListener {
- public:
-  void on_publication_matched(DataWriter*, const PublicationMatchedStatus& status) override {
-    const std::lock_guard lock(mutex_);
-    const GUID_t reader = fast_dds::rtps::iHandle2GUID(status.last_subscription_handle);
-    if (status.current_count_change > 0)
-      guids_.insert(reader);
-    else
-      guids_.erase(reader);
-  }
-  std::set<GUID_t> guids() const {
-    const std::lock_guard lock(mutex_);
-    return guids_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::set<GUID_t> guids_;
-};
 
 }  // namespace
 

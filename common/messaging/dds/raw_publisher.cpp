@@ -2,9 +2,11 @@
 #include "common/messaging/dds/raw_publisher.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "common/messaging/dds/matched_readers.hpp"
 #include "common/messaging/dds/participant.hpp"
 #include "common/messaging/dds/types.hpp"
 
@@ -39,9 +41,10 @@ struct DdsRawPublisher::Impl {
       : participant(settings, nullptr),
         type(new KeyedRawType(name, is_keyed)),
         support(type),
-        writer(participant.create_writer(topic, support, compatible_qos(), nullptr)) {}
+        writer(participant.create_writer(topic, support, compatible_qos(), &subscribers)) {}
   ~Impl() { participant.delete_writer(writer); }
 
+  MatchedReaders subscribers;
   DdsParticipant participant;
   KeyedRawType* type;  ///< owned by `support`
   TypeSupport support;
@@ -60,10 +63,14 @@ void DdsRawPublisher::write(std::span<const std::uint8_t> bytes, const CdrKey& k
   if (!fast_dds::write(*impl_->writer, &sample)) throw std::runtime_error("DDS failed to send the message");
 }
 
-int DdsRawPublisher::readers() const {
-  PublicationMatchedStatus status;
-  impl_->writer->get_publication_matched_status(status);
-  return status.current_count;
+std::set<std::string> DdsRawPublisher::readers() const {
+  std::set<std::string> result;
+  for (const fast_dds::rtps::GUID_t& guid : impl_->subscribers.guids()) {
+    std::ostringstream text;
+    text << guid;
+    result.insert(text.str());
+  }
+  return result;
 }
 
 bool DdsRawPublisher::wait_until_acknowledged(Duration timeout) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 
@@ -23,8 +24,8 @@ class DdsRawPublisher {
 
   /// Sends a payload including its encapsulation header. Throws std::runtime_error if DDS cannot send it.
   void write(std::span<const std::uint8_t> bytes, const CdrKey& key);
-  /// Number of readers that match now.
-  int readers() const;
+  /// The GUIDs of the readers that match now, as DiscoveredEndpoint has them.
+  std::set<std::string> readers() const;
   /// Waits until every reliable reader has acknowledged all messages; false on timeout.
   [[nodiscard]] bool wait_until_acknowledged(Duration timeout);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -17,6 +18,7 @@
 #include "deploy/inspect/topic/omitted_header.hpp"
 #include "deploy/inspect/topic/topic_channel.hpp"
 #include "deploy/inspect/topic/topic_tools.hpp"
+#include "deploy/inspect/topic/unmatched_readers.hpp"
 
 namespace sidestep {
 namespace {
@@ -67,6 +69,29 @@ std::string announced_type_name(const TopicOptions& options, const DdsListener& 
       "topic '{}' is neither Sidestep's nor in this domain; give its type with --type", options.topic));
 }
 
+/// Waits until all known readers of the topic match the publisher, because a message reaches no others.
+/// Returns false, and says which do not, if the time is over, or if there is none.
+bool wait_for_readers(const std::string& topic, const PublishedType& type, DdsListener& listener,
+                      const DdsRawPublisher& publisher) {
+  const Time deadline = listener.now() + kAnswerTimeout;
+  std::set<std::string> matched;
+  std::vector<std::string> missing;
+  const auto are_all_matched = [&] {
+    matched = publisher.readers();
+    missing = unmatched_readers(listener.endpoints(), topic, type, matched);
+    return !matched.empty() && missing.empty();
+  };
+  while (!are_all_matched() && listener.now() < deadline && !listener.stopped())
+    listener.run_until(listener.now() + kStep);
+  if (missing.empty() && !matched.empty()) return true;
+  if (missing.empty())
+    fmt::print(stderr, "topic '{}' has no matching reader\n", topic);
+  else
+    fmt::print(stderr, "not sent: only {} of {} readers of '{}' match: not {}\n", matched.size(),
+               matched.size() + missing.size(), topic, fmt::join(missing, ", "));
+  return false;
+}
+
 }  // namespace
 
 int publish_topic(const TopicOptions& options) {
@@ -85,13 +110,8 @@ int publish_topic(const TopicOptions& options) {
     message = checked_message(options, types, *name, json);
   }
   DdsRawPublisher publisher(options.dds, options.topic, *name, is_keyed(*message->type));
-  const Time deadline = listener.now() + kAnswerTimeout;
-  while (publisher.readers() == 0 && listener.now() < deadline && !listener.stopped())
-    listener.run_until(listener.now() + kStep);
-  if (publisher.readers() == 0) {
-    fmt::print(stderr, "topic '{}' has no matching reader\n", options.topic);
+  if (!wait_for_readers(options.topic, {*name, is_keyed(*message->type)}, listener, publisher))
     return kExitFailure;
-  }
   const std::uint64_t count = std::max<std::uint64_t>(options.printer.count, 1);
   const Time begun = listener.now();
   for (std::uint64_t i = 0; i < count && !listener.stopped(); ++i) {
@@ -102,7 +122,7 @@ int publish_topic(const TopicOptions& options) {
     fmt::print(stderr, "not all readers have acknowledged\n");
     return kExitFailure;
   }
-  print_output("sent to {} reader(s)\n", publisher.readers());
+  print_output("sent to {} reader(s)\n", publisher.readers().size());
   return 0;
 }
 

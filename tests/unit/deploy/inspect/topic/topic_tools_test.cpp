@@ -215,6 +215,25 @@ TEST_CASE("the graph shows processes by host, the topics they write and read, an
              ContainsSubstring("host 01.0f.bb.02\n  vision\n    writes world\n    reads  -\n"));
 }
 
+TEST_CASE("the graph shows processes of one host together, whatever their GUIDs begin with") {
+  DiscoveredEndpoint agent, monitor, foreign;
+  agent.guid = "01.0f.78.fd.01.00";
+  agent.participant = "agent-3";
+  agent.topic = "world";
+  agent.host = "kitchen";
+  monitor = agent;
+  monitor.guid = "73.73.6f.70.02.00";
+  monitor.participant = "sidestep-monitor";
+  foreign = agent;
+  foreign.guid = "01.10.aa.bb.03.00";
+  foreign.participant = "base";
+  foreign.host = "";
+  CHECK(to_text(graph_of({agent, monitor, foreign})) ==
+        "host 01.10.aa.bb\n  base\n    writes -\n    reads  world\n"
+        "\nhost kitchen\n  agent-3\n    writes -\n    reads  world\n"
+        "  sidestep-monitor\n    writes -\n    reads  world\n");
+}
+
 TEST_CASE("topic info shows the type, every endpoint with its QoS, and mismatches") {
   DiscoveredEndpoint reader = endpoint("logger", false, true);
   reader.deadline = Duration{500'000'000};
@@ -417,6 +436,29 @@ TEST_CASE("topic pub publishes messages of our topics") {
   CHECK(first.stamp_ns() >= static_cast<std::int64_t>(first.incarnation()));
   CHECK(second.stamp_ns() > first.stamp_ns());
   CHECK(std::chrono::abs(bus.now() - time_from_ns(second.stamp_ns())) < std::chrono::seconds(30));
+}
+
+TEST_CASE("topic pub sends once all known readers match, so each of them gets the message") {
+  struct Reader {
+    DdsBus bus{test_settings("reader")};
+    int received = 0;
+    Reader() {
+      bus.observe<msg::Disturbance>(topics::kDisturbance, 0, [this](const msg::Disturbance&) { ++received; });
+    }
+  };
+  Reader a, b, c, d;
+  std::atomic<bool> is_over = false;
+  Outcome outcome{};
+  std::thread thread([&] {
+    outcome = topic({"pub", "disturbance", R"({"robot": 3, "disturbance_kind": "DISTURBANCE_LIFT"})"});
+    is_over = true;
+  });
+  const auto have_all_received = [&] { return a.received && b.received && c.received && d.received; };
+  CHECK(run_until([&] { return is_over && have_all_received(); }, a.bus, b.bus, c.bus, d.bus));
+  thread.join();
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.out == "sent to 4 reader(s)\n");
 }
 
 TEST_CASE("topic pub reports errors in a message and topics without a reader", "[half-core]") {
