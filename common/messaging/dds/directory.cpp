@@ -9,12 +9,13 @@ namespace sidestep {
 
 namespace rtps = fast_dds::rtps;
 
-void DdsDirectory::on_participant(const rtps::GuidPrefix_t& prefix, const std::string& name, bool has_gone) {
+void DdsDirectory::on_participant(const rtps::GuidPrefix_t& prefix, const AnnouncedProcess& process,
+                                  bool has_gone) {
   const std::lock_guard lock(mutex_);
   if (has_gone)
-    names_.erase(prefix);
+    processes_.erase(prefix);
   else
-    names_[prefix] = name;
+    processes_[prefix] = process;
 }
 
 void DdsDirectory::on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
@@ -31,8 +32,10 @@ std::vector<DiscoveredEndpoint> DdsDirectory::endpoints() const {
   std::vector<DiscoveredEndpoint> result;
   for (const auto& [guid, endpoint] : endpoints_) {
     result.push_back(endpoint);
-    const auto name = names_.find(guid.guidPrefix);
-    if (name != names_.end()) result.back().participant = name->second;
+    const auto process = processes_.find(guid.guidPrefix);
+    if (process == processes_.end()) continue;
+    result.back().participant = process->second.name;
+    result.back().host = process->second.host;
   }
   std::sort(result.begin(), result.end(), [](const DiscoveredEndpoint& a, const DiscoveredEndpoint& b) {
     return std::tie(a.topic, b.is_writer, a.participant, a.guid) <
@@ -43,8 +46,8 @@ std::vector<DiscoveredEndpoint> DdsDirectory::endpoints() const {
 
 std::string DdsDirectory::participant_of(const rtps::GUID_t& guid) const {
   const std::lock_guard lock(mutex_);
-  const auto name = names_.find(guid.guidPrefix);
-  return name == names_.end() ? std::string() : name->second;
+  const auto process = processes_.find(guid.guidPrefix);
+  return process == processes_.end() ? std::string() : process->second.name;
 }
 
 }  // namespace sidestep

@@ -14,7 +14,7 @@ namespace sidestep {
 /// Participant listener that records the endpoints announced by the participants of the domain. Thread-safe.
 class DdsDirectory : public fast_dds::DiscoveryListener {
  public:
-  void on_participant(const fast_dds::rtps::GuidPrefix_t& prefix, const std::string& name,
+  void on_participant(const fast_dds::rtps::GuidPrefix_t& prefix, const AnnouncedProcess& process,
                       bool has_gone) override;
   void on_endpoint(const fast_dds::rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                    EndpointChange change) override;
@@ -26,7 +26,7 @@ class DdsDirectory : public fast_dds::DiscoveryListener {
 
  private:
   mutable std::mutex mutex_;
-  std::map<fast_dds::rtps::GuidPrefix_t, std::string> names_;
+  std::map<fast_dds::rtps::GuidPrefix_t, AnnouncedProcess> processes_;
   std::map<fast_dds::rtps::GUID_t, DiscoveredEndpoint> endpoints_;
 };
 

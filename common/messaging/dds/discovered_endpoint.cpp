@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 #include <fnmatch.h>
 
+#include "common/file/utf8.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -35,6 +37,10 @@ bool share_partition(const DiscoveredEndpoint& writer, const DiscoveredEndpoint&
 }
 
 }  // namespace
+
+std::string announced_host(const std::string& announced) {
+  return printable_line(announced.substr(0, announced.rfind(':')));
+}
 
 std::string qos_text(const DiscoveredEndpoint& endpoint) {
   std::string text =

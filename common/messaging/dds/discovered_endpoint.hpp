@@ -17,6 +17,7 @@ struct DiscoveredEndpoint {
 
   std::string guid;
   std::string participant;  ///< name of the endpoint's participant
+  std::string host = {};    ///< name of its host; empty if it does not announce one
   std::string topic;
   std::string type;
   bool is_writer = false;
@@ -29,6 +30,15 @@ struct DiscoveredEndpoint {
   Duration deadline = Duration::max();
   std::vector<std::string> partitions;  ///< empty: the unnamed partition
 };
+
+/// What a participant announces about its process.
+struct AnnouncedProcess {
+  std::string name;  ///< name of the participant
+  std::string host;  ///< name of its host; empty if it does not announce one
+};
+
+/// The host's name in what Fast DDS announces, which is "name:number", as one printable line.
+[[nodiscard]] std::string announced_host(const std::string& announced);
 
 /// What discovery reports about an endpoint: discovered, changed or gone.
 enum class EndpointChange : std::uint8_t { kDiscovered, kChanged, kGone };

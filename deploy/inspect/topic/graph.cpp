@@ -12,8 +12,11 @@
 namespace sidestep {
 namespace {
 
-/// The first four bytes of a GUID: vendor and host ("01.0f.a3.5c").
-std::string host_of(const std::string& guid) { return guid.substr(0, 11); }
+/// The host's name. A process of another vendor may not announce it; then the first four bytes of its GUID,
+/// which contain its vendor and host ("01.0f.a3.5c").
+std::string host_of(const DiscoveredEndpoint& endpoint) {
+  return endpoint.host.empty() ? endpoint.guid.substr(0, 11) : endpoint.host;
+}
 
 }  // namespace
 
@@ -30,7 +33,7 @@ ProcessGraph graph_of(const std::vector<DiscoveredEndpoint>& endpoints) {
   std::map<std::pair<std::string, std::string>, ProcessGraph::Process> processes;  // indexed by host and name
   std::set<std::string> topics;
   for (const DiscoveredEndpoint& endpoint : endpoints) {
-    const std::string host = host_of(endpoint.guid), topic = without_channel(endpoint.topic);
+    const std::string host = host_of(endpoint), topic = without_channel(endpoint.topic);
     const std::string name = endpoint.participant.empty() ? endpoint.guid : endpoint.participant;
     ProcessGraph::Process& process = processes[{host, name}];
     process.name = name;

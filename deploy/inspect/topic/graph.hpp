@@ -13,7 +13,8 @@ namespace sidestep {
 struct ProcessGraph {
   struct Process {
     std::string name;
-    std::string host;  ///< the part of the process's GUID that identifies its host
+    std::string
+        host;  ///< its name, as `sidestep clock` prints it; without one, the start of the process's GUID
     std::set<std::string> writes, reads;
   };
   std::vector<Process> processes;       ///< sorted by host and name

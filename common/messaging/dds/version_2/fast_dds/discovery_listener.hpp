@@ -19,7 +19,7 @@ namespace sidestep::fast_dds {
 class DiscoveryListener : public dds::DomainParticipantListener {
  public:
   /// A participant was discovered, has changed or has gone.
-  virtual void on_participant(const rtps::GuidPrefix_t&, const std::string& /*name*/, bool /*has_gone*/) {}
+  virtual void on_participant(const rtps::GuidPrefix_t&, const AnnouncedProcess&, bool /*has_gone*/) {}
   /// An endpoint was discovered, has changed or has gone.
   virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                            EndpointChange change) = 0;
@@ -42,7 +42,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) final {
     const bool has_gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
                           info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
-    on_participant(info.info.m_guid.guidPrefix, info.info.m_participantName.to_string(), has_gone);
+    on_participant(info.info.m_guid.guidPrefix,
+                   {info.info.m_participantName.to_string(), host_of(info.info.m_properties)}, has_gone);
     const auto& user_data = info.info.m_userData.data_vec();
     if (on_announcement && !has_gone) on_announcement({user_data.data(), user_data.size()});
   }
@@ -58,6 +59,13 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   }
 
  private:
+  static std::string host_of(const dds::ParameterPropertyList_t& properties) {
+    for (const dds::ParameterProperty_t& property : properties)
+      if (property.first() == dds::parameter_policy_physical_data_host)
+        return announced_host(property.second());
+    return {};
+  }
+
   static EndpointChange change_of(bool is_new, bool has_gone) {
     return is_new ? EndpointChange::kDiscovered : has_gone ? EndpointChange::kGone : EndpointChange::kChanged;
   }

@@ -22,7 +22,7 @@ namespace sidestep::fast_dds {
 class DiscoveryListener : public dds::DomainParticipantListener {
  public:
   /// A participant was discovered, has changed or has gone.
-  virtual void on_participant(const rtps::GuidPrefix_t&, const std::string& /*name*/, bool /*has_gone*/) {}
+  virtual void on_participant(const rtps::GuidPrefix_t&, const AnnouncedProcess&, bool /*has_gone*/) {}
   /// An endpoint was discovered, has changed or has gone.
   virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                            EndpointChange change) = 0;
@@ -46,7 +46,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
                                 const rtps::ParticipantBuiltinTopicData& info, bool&) final {
     const bool has_gone = status == rtps::ParticipantDiscoveryStatus::REMOVED_PARTICIPANT ||
                           status == rtps::ParticipantDiscoveryStatus::DROPPED_PARTICIPANT;
-    on_participant(info.guid.guidPrefix, info.participant_name.to_string(), has_gone);
+    on_participant(info.guid.guidPrefix, {info.participant_name.to_string(), host_of(info.properties)},
+                   has_gone);
     const auto& user_data = info.user_data.data_vec();
     if (on_announcement && !has_gone) on_announcement({user_data.data(), user_data.size()});
   }
@@ -64,6 +65,13 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   }
 
  private:
+  static std::string host_of(const dds::ParameterPropertyList_t& properties) {
+    for (const dds::ParameterProperty_t& property : properties)
+      if (property.first() == dds::parameter_policy_physical_data_host)
+        return announced_host(property.second());
+    return {};
+  }
+
   static EndpointChange change_of(bool is_new, bool has_gone) {
     return is_new ? EndpointChange::kDiscovered : has_gone ? EndpointChange::kGone : EndpointChange::kChanged;
   }

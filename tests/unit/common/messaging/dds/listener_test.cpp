@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/process/host_name.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
@@ -44,6 +45,7 @@ TEST_CASE("a listener lists writers and readers, and notices when they leave") {
     REQUIRE(writer != nullptr);
     REQUIRE(reader != nullptr);
     CHECK(writer->participant == "other");
+    CHECK(writer->host == host_name());
     CHECK(writer->type == "sidestep::msg::Feedback");
     CHECK(writer->is_keyed);
     CHECK_FALSE(writer->is_reliable);
@@ -51,6 +53,24 @@ TEST_CASE("a listener lists writers and readers, and notices when they leave") {
     CHECK(reader->type == "sidestep::msg::Verdict");
   }
   CHECK(run_until([&] { return listener.endpoints().empty(); }, listener));
+}
+
+TEST_CASE("a host's name is what comes before the number that Fast DDS appends") {
+  CHECK(announced_host("kitchen:17164142299256324096") == "kitchen");
+  CHECK(announced_host("a:b:7") == "a:b");
+  CHECK(announced_host("kitchen") == "kitchen");
+  CHECK(announced_host("") == "");
+  CHECK(announced_host("kit\nchen\x1b[2J:7").find_first_of("\n\x1b") == std::string::npos);
+}
+
+TEST_CASE("an operator's process announces its host, too") {
+  DdsListener listener(test_settings("listener"));
+  DdsSettings settings = test_settings("operator");
+  settings.is_operator = true;
+  DdsBus bus(settings);
+  const auto state = bus.advertise(topics::kFeedback, 4);
+  REQUIRE(run_until([&] { return find(listener.endpoints(), "feedback/4", true) != nullptr; }, listener));
+  CHECK(find(listener.endpoints(), "feedback/4", true)->host == host_name());
 }
 
 TEST_CASE("a listener receives the raw bytes of a topic of unknown type") {
