@@ -69,6 +69,27 @@ void require_valid_documents(const KeyFolder& keys, const RevocationList& revoke
                 kReissueHint);
 }
 
+/// Whether the folder made by `sidestep keys init` says that keys of this identity were revoked. Copies of
+/// such a folder on other hosts may not say it.
+bool were_revoked(const std::string& store, const Identity& identity) {
+  const std::string publicly = store + "/public/";
+  std::error_code none;
+  try {
+    const Certificate authority = Certificate::load(publicly + key_files::kIdentityAuthority);
+    for (const std::string& serial : load_revoked_serials(publicly + key_files::kRevoked, authority)) {
+      const std::string file = fmt::format("{}{}/{}.pem", publicly, key_files::kIssued, serial);
+      if (!fs::is_regular_file(file, none)) continue;
+      const auto other = Certificate::load(file).identity();
+      if (other && other->role == identity.role && other->name == identity.name &&
+          other->covers(identity.first) && other->covers(identity.last))
+        return true;
+    }
+  } catch (const std::exception&) {
+    // What is wrong with the store matters less than the keys that are missing.
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string utc_text(Time time, const char* format) {
@@ -98,6 +119,10 @@ std::string key_folder_of(const std::string& store, const Identity& identity) {
     const auto other = parse_identity(name.replace(5, 1, " "));
     if (other && other->first <= identity.first && other->last >= identity.last) return entry.path().string();
   }
+  if (were_revoked(store, identity))
+    throw std::invalid_argument(
+        fmt::format("--keys: the keys of {} were revoked; `sidestep keys show --keys {}` lists all keys",
+                    to_text(identity), store));
   // A scenario does not name the clients of its runs.
   const std::string remedy =
       identity.role == Role::kClient

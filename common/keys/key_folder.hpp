@@ -18,6 +18,8 @@ inline constexpr const char* kPermissionsAuthority = "permissions_ca.cert.pem";
 inline constexpr const char* kRevoked = "crl.pem";
 inline constexpr const char* kGovernance = "governance.p7s";
 inline constexpr const char* kPermissions = "permissions.p7s";
+/// In a store's `public`: the folder with copies of all certificates that were issued, named SERIAL.pem.
+inline constexpr const char* kIssued = "issued";
 
 /// The names of all files.
 inline constexpr const char* kAll[] = {kCertificate, kPrivateKey, kIdentityAuthority, kPermissionsAuthority,

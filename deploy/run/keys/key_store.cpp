@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kIdentityKey = "identity_ca.key.pem";
 constexpr const char* kPermissionsKey = "permissions_ca.key.pem";
-/// Copies of all certificates that have been issued: public/issued/SERIAL.pem.
-constexpr const char* kIssued = "issued";
 
 /// Margin of the times in permissions, because Fast DDS interprets them in the host's time zone. The times in
 /// the certificate are UTC, and limit how long the key is used.
@@ -106,7 +104,7 @@ void link_public_file(const std::string& folder, const char* name) {
 }
 
 void write_authorities(const std::string& folder, Time now, Time until) {
-  create_folder(folder + "/public/" + kIssued);
+  create_folder(folder + "/public/" + key_files::kIssued);
   create_folder(folder + "/private");
   create_folder(folder + "/enclaves");
   fs::permissions(folder + "/private", fs::perms::owner_all);
@@ -191,8 +189,8 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
                            key_files::kRevoked, key_files::kGovernance})
     link_public_file(folder, name);
   FileChanges changes;
-  changes.add(public_file(fmt::format("{}/{}.pem", kIssued, certificate.serial())), to_pem(certificate),
-              kPublic);
+  changes.add(public_file(fmt::format("{}/{}.pem", key_files::kIssued, certificate.serial())),
+              to_pem(certificate), kPublic);
   changes.add(folder + "/" + key_files::kPermissions, signed_permissions, kPublic);
   changes.add(folder + "/" + key_files::kPrivateKey, to_pem(key), kPrivate);
   changes.add(folder + "/" + key_files::kCertificate, to_pem(certificate), kPublic);
@@ -200,9 +198,19 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
   return folder;
 }
 
+void KeyStore::write_revoked(const std::set<std::string>& serials, Time now) {
+  const Authority authority = identity_authority(folder_);
+  write_file(public_file(key_files::kRevoked),
+             authority.revocation_list(serials, now, authority.certificate().not_after()));
+  if (revoked_serials(folder_) != serials)
+    throw std::runtime_error("the list of revoked keys in " + public_file(key_files::kRevoked) +
+                             " differs from what was written; these keys may still be valid");
+}
+
 std::vector<Revocation> KeyStore::revoke(std::span<const Identity> identities, Time now) {
   const FolderLock lock(folder_);
-  std::set<std::string> serials = revoked_serials(folder_);
+  const std::set<std::string> known = revoked_serials(folder_);
+  std::set<std::string> serials = known;
   const std::vector<IssuedKey> issued = keys();
   std::vector<Revocation> result;
   for (const Identity& identity : identities) {
@@ -211,12 +219,7 @@ std::vector<Revocation> KeyStore::revoke(std::span<const Identity> identities, T
       if (key.name == to_text(identity)) ++(serials.insert(key.serial).second ? done.revoked : done.before);
     }
   }
-  const Authority authority = identity_authority(folder_);
-  write_file(public_file(key_files::kRevoked),
-             authority.revocation_list(serials, now, authority.certificate().not_after()));
-  if (revoked_serials(folder_) != serials)
-    throw std::runtime_error("the list of revoked keys in " + public_file(key_files::kRevoked) +
-                             " differs from what was written; these keys may still be valid");
+  if (serials != known) write_revoked(serials, now);
   for (const Identity& identity : identities) fs::remove_all(folder_ + "/enclaves/" + folder_name(identity));
   return result;
 }
@@ -224,7 +227,7 @@ std::vector<Revocation> KeyStore::revoke(std::span<const Identity> identities, T
 std::vector<IssuedKey> KeyStore::keys() const {
   const std::set<std::string> serials = revoked_serials(folder_);
   std::vector<IssuedKey> result;
-  for (const auto& entry : fs::directory_iterator(public_file(kIssued))) {
+  for (const auto& entry : fs::directory_iterator(public_file(key_files::kIssued))) {
     if (entry.path().extension() != ".pem") continue;  // left by a process that was killed
     IssuedKey& key = result.emplace_back();
     key.serial = entry.path().stem().string();

@@ -45,7 +45,8 @@ class KeyStore {
   /// expires. Returns the folder of the identity.
   std::string issue(const Identity& identity, Time now, Time until);
   /// Revokes all keys of these identities in a single new list of revoked keys, which is read back for
-  /// verification, and removes their folders. Returns the results in the same order.
+  /// verification, and removes their folders. The list stays as it is if it has them already. Returns the
+  /// results in the same order.
   std::vector<Revocation> revoke(std::span<const Identity> identities, Time now);
   /// All issued keys, sorted by name.
   std::vector<IssuedKey> keys() const;
@@ -53,6 +54,7 @@ class KeyStore {
   Time authorities_expire() const;
 
  private:
+  void write_revoked(const std::set<std::string>& serials, Time now);
   std::string public_file(const std::string& name) const { return folder_ + "/public/" + name; }
   std::string private_file(const std::string& name) const { return folder_ + "/private/" + name; }
 

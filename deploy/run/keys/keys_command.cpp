@@ -87,11 +87,13 @@ int revoke(const KeysOptions& options) {
     else
       unknown.push_back(name);
   }
+  if (!text.empty())
+    text += fmt::format(
+        "processes that use {}/enclaves refuse them within a second; copy {}/public/crl.pem into the folders "
+        "of keys on other hosts\n",
+        options.folder, options.folder);
   // The problems below matter more than a missing reader.
-  const int output_error =
-      write_text(stdout, fmt::format("{}processes that use {}/enclaves refuse them within a second; copy "
-                                     "{}/public/crl.pem into the folders of keys on other hosts\n",
-                                     text, options.folder, options.folder));
+  const int output_error = write_text(stdout, text);
   std::vector<std::string> problems;
   if (!unknown.empty())
     problems.push_back(

@@ -218,4 +218,26 @@ TEST_CASE("a process picks its own keys from a folder that holds keys of several
                     ContainsSubstring("sidestep keys init"));
 }
 
+TEST_CASE("a process whose keys were revoked is told so, until it gets new ones") {
+  TestKeys keys({"client", "alice", "agent", "3", "robot", "0-10"});
+  const auto own = [&](const char* text) {
+    return own_key_folder(keys.folder(), parse_identity(text).value());
+  };
+  for (const char* name : {"client alice", "agent 3"}) {
+    CAPTURE(name);
+    const Identity identity = parse_identity(name).value();
+    REQUIRE(keys.revoke(identity) == 1);
+    CHECK_THROWS_WITH(
+        own(name),
+        fmt::format("--keys: the keys of {} were revoked; `sidestep keys show --keys {}` lists all keys",
+                    name, keys.folder()));
+    keys.issue(identity);
+    CHECK(own(name) == keys.folder() + "/enclaves/" + folder_name(identity));
+  }
+  CHECK_THROWS_WITH(own("client bob"), ContainsSubstring("has no keys of client bob"));
+  REQUIRE(keys.revoke({Role::kRobot, 0, 10}) == 1);
+  CHECK_THROWS_WITH(own("robot 4"), ContainsSubstring("the keys of robot 4 were revoked"));
+  CHECK_THROWS_WITH(own("robot 9-11"), ContainsSubstring("has no keys of robot 9-11"));
+}
+
 }  // namespace sidestep::key_folder_test

@@ -87,6 +87,19 @@ TEST_CASE("revoking one identity does not affect the others") {
   CHECK_THROWS(keys.folder_of("agent 4"));
 }
 
+TEST_CASE("the list of revoked keys is written again only if it gets longer") {
+  TestKeys keys({"agent", "3-4"});
+  const std::string list = keys.folder() + "/public/crl.pem";
+  const std::string empty = text_of(list);
+  CHECK(keys.revoke({Role::kClient, 0, 0, "zed"}) == 0);
+  CHECK(text_of(list) == empty);
+  CHECK(keys.revoke({Role::kAgent, 3, 3}) == 1);
+  const std::string revoked = text_of(list);
+  CHECK(revoked != empty);
+  CHECK(keys.revoke({Role::kAgent, 3, 3}) == 0);
+  CHECK(text_of(list) == revoked);
+}
+
 TEST_CASE("several identities are revoked together even if some of them are already revoked") {
   TestKeys keys({"agent", "0-3"});
   const std::vector<Identity> all{
