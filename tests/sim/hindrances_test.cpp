@@ -14,7 +14,7 @@ TEST_CASE("a client learns why robots that are lifted, switched off or held do n
   OrderedSystem run(waiting_robots(4), 1);
   SimBus bus(run.system.network());
   OrderClient bob(bus, client_id("bob"), "bob"), operator_client(bus, kOperator);
-  RobotWatch watch(bus, operator_client);
+  RobotWatch watch(bus, operator_client, false);
   watch.watch_all();
   run.system.run_for(seconds(2));
   CHECK(watch.all_hindrances().empty());

@@ -70,7 +70,7 @@ int show_status(const OrderOptions& options) {
   DdsBus bus(dds_of(options));
   const StopSignals stop_signals([&bus] { bus.stop(); });
   const OrderClient client(bus, client_of(options));
-  RobotWatch watch(bus, client);
+  RobotWatch watch(bus, client, !options.dds.keys.empty());
   watch.watch_all();
   if (options.once || !terminal_of(STDOUT_FILENO).can_redraw) {
     bus.run_until(bus.now() + kOnceDuration);

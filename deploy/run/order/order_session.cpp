@@ -110,7 +110,7 @@ int OrderSession::finish_resume(OrderHandle handle) {
 int OrderSession::finish(const std::vector<OrderHandle>& handles) {
   handles_ = handles;
   if (options_.waits) {
-    watch_.emplace(bus_, client_);
+    watch_.emplace(bus_, client_, !options_.dds.keys.empty());
     for (const OrderHandle handle : handles_) watch_->watch(client_.find(handle)->order.robot);
     call_periodically(bus_, kHindrancePeriod, [this] { print_hindrances(); });
   }

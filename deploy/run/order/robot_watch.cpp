@@ -24,7 +24,8 @@ bool is_from(RobotId robot, const msg::Header& header) {
 
 }  // namespace
 
-RobotWatch::RobotWatch(Bus& bus, const OrderClient& orders) : bus_(bus), orders_(orders) {
+RobotWatch::RobotWatch(Bus& bus, const OrderClient& orders, bool has_keys)
+    : bus_(bus), orders_(orders), has_keys_(has_keys), coordinator_heard_at_(bus.now()) {
   bus.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& status) { on_order_status(status); });
   if (bus.may_read(topics::kStatus, 0))
     bus.subscribe(topics::kStatus, [this](const msg::AgentStatus& status) { on_agent_status(status); });
@@ -68,8 +69,9 @@ void RobotWatch::on_agent_status(const msg::AgentStatus& status) {
 }
 
 void RobotWatch::on_coordinator_state(const msg::CoordinatorState& state) {
-  const bool is_active = is_coordinator(state.header().sender()) &&
-                         state.coordinator_mode() != msg::CoordinatorMode::COORDINATOR_STANDBY &&
+  if (!is_coordinator(state.header().sender())) return;
+  coordinator_heard_at_ = bus_.now();
+  const bool is_active = state.coordinator_mode() != msg::CoordinatorMode::COORDINATOR_STANDBY &&
                          is_plausible(state.epoch(), bus_.now());
   if (!is_active || (is_active_heard() && state.epoch() < active_.epoch())) return;
   active_ = state;
@@ -88,6 +90,12 @@ bool RobotWatch::is_held(RobotId robot, const std::optional<OrderBook>& remember
 
 void RobotWatch::add_silences(const Row& row, std::vector<Hindrance>& found) const {
   const Duration agent = bus_.now() - row.agent_heard_at, robot = bus_.now() - row.heard_at;
+  const Duration both = bus_.now() - std::max(row.agent_heard_at, coordinator_heard_at_);
+  if (both > kAgentSilence) {
+    found.push_back({"no agent", "neither a coordinator nor its agent has been heard", both});
+    if (has_keys_) found.push_back({"no agent", "this key may have been revoked"});
+    return;
+  }
   if (agent > kAgentSilence) found.push_back({"no agent", "its agent has sent no report", agent});
   if (row.hears_robot && robot > kRobotSilence) found.push_back({"silent", "it has sent no report", robot});
 }

@@ -20,8 +20,9 @@ class RobotWatch {
   /// and agents once a second.
   static constexpr Duration kRobotSilence{1'000'000'000}, kAgentSilence{3'000'000'000};
 
-  /// `orders` must outlive this object, and this object must outlive the last callback of the bus.
-  RobotWatch(Bus& bus, const OrderClient& orders);
+  /// `orders` must outlive this object, and this object must outlive the last callback of the bus. With
+  /// `has_keys`, a process that hears nobody may be refused by everybody.
+  RobotWatch(Bus& bus, const OrderClient& orders, bool has_keys);
   RobotWatch(const RobotWatch&) = delete;
   RobotWatch& operator=(const RobotWatch&) = delete;
 
@@ -61,6 +62,8 @@ class RobotWatch {
 
   Bus& bus_;
   const OrderClient& orders_;
+  const bool has_keys_;
+  Time coordinator_heard_at_;  // when a coordinator was last heard, or watching began
   bool watches_all_ = false;
   std::map<RobotId, Row> rows_;
   msg::CoordinatorState active_;  // the last state of the coordinator that is active in the highest epoch

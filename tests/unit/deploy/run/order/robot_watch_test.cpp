@@ -23,18 +23,19 @@ struct Scene {
   SimNetwork network{1, time_from_ns(1'000'000'000'000), NetworkSpec{}};
   SimBus watch_bus{network}, bus{network};
   OrderClient client{watch_bus, client_id("alice"), "alice"};
-  RobotWatch watch{watch_bus, client};
+  RobotWatch watch;
   Writer<msg::Feedback> robot_writer = bus.advertise(topics::kFeedback, kRobot);
   Writer<msg::OrderStatus> order_writer = bus.advertise(topics::kOrderStatus);
   Writer<msg::AgentStatus> agent_writer = bus.advertise(topics::kStatus);
   Writer<msg::CoordinatorState> coordinator_writer = bus.advertise(topics::kCoordinator);
   Writer<msg::OrderMemory> memory_writer = bus.advertise(topics::kOrderMemory);
   OrderBook book;
-  bool robot_reports = true, agent_reports = true, is_lifted = false, is_held = false;
+  bool robot_reports = true, agent_reports = true, coordinator_reports = true, is_lifted = false,
+       is_held = false;
   msg::AgentState agent_state = msg::AgentState::AGENT_DRIVING;
   msg::CoordinatorState coordinator;
 
-  Scene() {
+  explicit Scene(bool has_keys = false) : watch(watch_bus, client, has_keys) {
     coordinator.header().sender(kCoordinator);
     coordinator.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
     coordinator.epoch(8);
@@ -76,7 +77,7 @@ struct Scene {
     for (const Time end = network.now() + duration; network.now() < end;) {
       if (robot_reports) report_robot();
       if (agent_reports) report_agent();
-      coordinator_writer.publish(coordinator, bus.now());
+      if (coordinator_reports) coordinator_writer.publish(coordinator, bus.now());
       network.run_until(network.now() + 20ms);
     }
   }
@@ -128,6 +129,24 @@ TEST_CASE("an agent that sends no reports is silent") {
   scene.run(1500ms);
   CHECK(scene.text() == "its agent has sent no report for 4 s");
   CHECK(scene.watch.hindrances(kRobot).front().state == "no agent");
+}
+
+TEST_CASE("a process that hears neither coordinator nor agent says so, and with keys what may be the cause") {
+  const bool has_keys = GENERATE(false, true);
+  Scene scene(has_keys);
+  scene.run(1s);
+  scene.robot_reports = scene.agent_reports = scene.coordinator_reports = false;
+  scene.run(2200ms);
+  CHECK(scene.text() == "it has sent no report for 2 s");
+  scene.run(2s);
+  const std::string keys = has_keys ? "; this key may have been revoked" : "";
+  CHECK(lasting_text(scene.watch.hindrances(kRobot)) ==
+        "neither a coordinator nor its agent has been heard" + keys);
+  CHECK(scene.text() == "neither a coordinator nor its agent has been heard for 4 s" + keys);
+  scene.coordinator.coordinator_mode(msg::CoordinatorMode::COORDINATOR_STANDBY);
+  scene.coordinator_reports = true;
+  scene.run(100ms);
+  CHECK_THAT(scene.text(), StartsWith("its agent has sent no report for 4 s"));
 }
 
 TEST_CASE("the holders of a robot are named once a coordinator has told them") {
