@@ -8,6 +8,7 @@
 #include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/help/page_path.hpp"
 #include "vision/calibrate/calibrate_colours.hpp"
 #include "vision/calibrate/calibrate_geometry.hpp"
 
@@ -64,10 +65,12 @@ void add_calibrate_command(const CliCommand& root, std::function<int()>& action)
                                                  "Learns colours from pictures of a floor on which "
                                                  "everything is at its start position. With --geometry: "
                                                  "calibrates cameras from points with known positions");
-  const Option geometry =
-      command.add_option("--geometry", options->points_file,
-                         "calibrate cameras instead, from this file of points, see vision/README.md");
-  command.add_option("SCENARIO", colours.scenario_file, "scenario file, see deploy/scenarios/README.md")
+  const Option geometry = command.add_option(
+      "--geometry", options->points_file,
+      "calibrate cameras instead, from this file of points, see " + page_path("vision/README.md"));
+  command
+      .add_option("SCENARIO", colours.scenario_file,
+                  "scenario file, see " + page_path("deploy/scenarios/README.md"))
       .excludes(geometry);
   command.add_option("FRAME", colours.frame_files, "pictures by cameras, such as PNG files")
       .excludes(geometry);

@@ -6,6 +6,7 @@
 
 #include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/help/page_path.hpp"
 #include "common/process/log_option.hpp"
 #include "common/process/process.hpp"
 #include "deploy/run/launch/run.hpp"
@@ -26,7 +27,9 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
   options->dds.identity = {Role::kJudge};
   const CliCommand command =
       root.add_subcommand("run", "Runs a scenario over DDS, with one process for each part of the system");
-  command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
+  command
+      .add_option("SCENARIO", options->scenario_file,
+                  "scenario file, see " + page_path("deploy/scenarios/README.md"))
       .required();
   command.add_option("--record", options->recording_file,
                      "record all messages to this file; an earlier file is replaced");
@@ -78,7 +81,9 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .add_option("--robots", options->floor.robots,
                   "extra options for sidestep-robot, e.g. --robots=\"--latency-ms 120\"")
       .needs(command.option("--driver"));
-  command.add_option("--hosts", options->hosts_file, "hosts file, see deploy/run/launch/README.md")
+  command
+      .add_option("--hosts", options->hosts_file,
+                  "hosts file, see " + page_path("deploy/run/launch/README.md"))
       .excludes(command.option("--interface"));
   command.on_parsed([options, &action] {
     if (options->monitor_port) require_port(*options->monitor_port);

@@ -17,6 +17,7 @@
 #include "common/marking/layout_file.hpp"
 #include "common/motion/rolling_ball.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/help/page_path.hpp"
 #include "common/process/process.hpp"
 #include "simulator/images/floor_scene.hpp"
 #include "simulator/rendering/frame_renderer.hpp"
@@ -101,7 +102,9 @@ void add_frame_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand command =
       root.add_subcommand("frame", "Renders a camera's view of a scenario's floor at the start");
   const auto options = std::make_shared<FrameOptions>();
-  command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
+  command
+      .add_option("SCENARIO", options->scenario_file,
+                  "scenario file, see " + page_path("deploy/scenarios/README.md"))
       .required();
   command.add_option("PICTURE", options->picture_file, "file to write; an earlier file is replaced")
       .required()

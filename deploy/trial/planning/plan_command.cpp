@@ -13,6 +13,7 @@
 #include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/help/page_path.hpp"
 #include "common/process/process.hpp"
 #include "deploy/trial/planning/plan_picture.hpp"
 #include "deploy/trial/planning/world_file.hpp"
@@ -118,8 +119,8 @@ void add_plan_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<PlanOptions>();
   command
       .add_option("WORLD", options->world,
-                  fmt::format("world file (see deploy/trial/planning/README.md), or one of {}",
-                              fmt::join(world_names(), ", ")))
+                  fmt::format("world file (see {}), or one of {}",
+                              page_path("deploy/trial/planning/README.md"), fmt::join(world_names(), ", ")))
       .required();
   command.add_option("--planner", options->planner, "name of the planner")
       .check(one_of(names()))

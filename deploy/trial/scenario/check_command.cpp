@@ -14,6 +14,7 @@
 #include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/exit_code.hpp"
+#include "common/process/help/page_path.hpp"
 #include "common/process/output_paths.hpp"
 #include "common/terminal/terminal.hpp"
 #include "deploy/trial/scenario/reachable_goals.hpp"
@@ -102,8 +103,8 @@ void add_check_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<CheckOptions>();
   const CliCommand command = root.add_subcommand(
       "check", "Checks scenario files without running them, and draws the floor if there is one file");
-  const Option files =
-      command.add_option("FILE", options->files, "scenario files, see deploy/scenarios/README.md");
+  const Option files = command.add_option("FILE", options->files,
+                                          "scenario files, see " + page_path("deploy/scenarios/README.md"));
   const Option svg = command.add_option(
       "--svg", options->picture_file, "draw the scenario to this SVG file, too; an earlier file is replaced");
   const Option schema = command.add_flag("--schema", options->prints_schema,

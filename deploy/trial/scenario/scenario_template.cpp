@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/scenario/scenario_template.hpp"
 
+#include "common/process/help/page_path.hpp"
+
 namespace sidestep {
 namespace {
+
+/// The pages that the template names.
+constexpr const char *kKeysPage = "deploy/scenarios/README.md", *kMapPage = "common/map/README.md";
 
 constexpr const char* kTemplate =
     R"yaml(# A floor with a wall, a door in it, and three robots that pass it. Lengths are in metres, positions are [x, y] from the
@@ -57,10 +62,15 @@ time_limit_s: 60                     # for all robots to arrive
 #  - {arrived: all}
 )yaml";
 
+std::string with_installed_page(std::string text, const std::string& page) {
+  return text.replace(text.find(page), page.size(), page_path(page));
+}
+
 }  // namespace
 
 std::string scenario_template(const std::string& schema_path) {
-  return (schema_path.empty() ? "" : "# yaml-language-server: $schema=" + schema_path + "\n") + kTemplate;
+  return (schema_path.empty() ? "" : "# yaml-language-server: $schema=" + schema_path + "\n") +
+         with_installed_page(with_installed_page(kTemplate, kKeysPage), kMapPage);
 }
 
 }  // namespace sidestep

@@ -8,6 +8,7 @@
 
 #include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/help/page_path.hpp"
 #include "common/process/log_option.hpp"
 #include "common/process/output_paths.hpp"
 #include "deploy/trial/simulate/campaign/campaign.hpp"
@@ -64,9 +65,9 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
   CampaignOptions& campaign = options->campaign;
   const CliCommand command = root.add_subcommand(
       "simulate", "Runs a scenario in one process and virtual time; the same seed gives the same run");
-  const Option scenario =
-      command.add_option("SCENARIO", run.scenario_file,
-                         "scenario file, see deploy/scenarios/README.md [with --faults: a random scene]");
+  const Option scenario = command.add_option(
+      "SCENARIO", run.scenario_file,
+      "scenario file, see " + page_path("deploy/scenarios/README.md") + " [with --faults: a random scene]");
   command.add_option(
       "--report", run.report_file,
       "report file; an earlier file is replaced [reports/<scenario>-<seed>.json; with --seeds: none]");

@@ -13,6 +13,7 @@
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/free_domain.hpp"
 #include "common/process/exit_code.hpp"
+#include "common/process/help/page_path.hpp"
 #include "common/process/log_option.hpp"
 #include "common/yaml/config_error.hpp"
 #include "deploy/run/launch/run.hpp"
@@ -90,7 +91,7 @@ void add_test_command(const CliCommand& root, std::function<int()>& action) {
       "test", "Runs scenarios with their faults, and checks their expectations; in virtual time or over DDS");
   command
       .add_option("FILE", options->files,
-                  "scenario files with the key expect, see deploy/scenarios/README.md")
+                  "scenario files with the key expect, see " + page_path("deploy/scenarios/README.md"))
       .required();
   command.add_option("--junit", options->junit_file,
                      "write the results to this file, as JUnit XML; an earlier file is replaced");
@@ -115,7 +116,9 @@ void add_test_command(const CliCommand& root, std::function<int()>& action) {
       .add_flag("--insecure", options->insecure,
                 "run without keys on a network that other machines can reach")
       .needs(dds);
-  command.add_option("--hosts", options->hosts_file, "hosts file, see deploy/run/launch/README.md")
+  command
+      .add_option("--hosts", options->hosts_file,
+                  "hosts file, see " + page_path("deploy/run/launch/README.md"))
       .needs(dds)
       .excludes(interface);
   command
