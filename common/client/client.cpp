@@ -12,6 +12,7 @@
 #include "common/client/order_states.hpp"
 #include "common/client/robot_table.hpp"
 #include "common/messaging/dds/bus.hpp"
+#include "common/messaging/refusal_text.hpp"
 #include "common/version/version.hpp"
 
 namespace sidestep::client {
@@ -41,6 +42,24 @@ std::string name_of(const Settings& settings) { return settings.is_operator ? ""
 }  // namespace
 
 const char* version() { return kVersion; }
+
+const char* text(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kNone:
+      return "";
+    case Refusal::kMalformed:
+      return "it has no goals or corners, too many of them, or a number that is NaN or out of bounds";
+    case Refusal::kUnknownRobot:
+      return refusal_text(msg::OrderResult::RESULT_UNKNOWN_ROBOT);
+    case Refusal::kOutsideField:
+      return refusal_text(msg::OrderResult::RESULT_OUTSIDE_FIELD);
+    case Refusal::kTooMany:
+      return refusal_text(msg::OrderResult::RESULT_TOO_MANY);
+    case Refusal::kUnknownZone:
+      break;
+  }
+  return "this client has no zone of this number";
+}
 
 struct Client::Impl {
   using Send = std::function<OrderHandle(OrderClient&)>;

@@ -74,11 +74,14 @@ enum class Refusal {
   kUnknownZone    ///< this client has no zone of this number that could be removed
 };
 
+/// The reason in words, for example "a goal is outside the field"; empty for kNone.
+[[gnu::visibility("default")]] const char* text(Refusal refusal);
+
 struct OrderState {
   OrderPhase phase = OrderPhase::kSent;
-  Refusal refusal = Refusal::kNone;
-  std::size_t goal_index = 0;  ///< index of the goal that the robot is driving to
-  bool is_over = false;        ///< complete, replaced or refused; for zones: coordinators remember it
+  Refusal refusal = Refusal::kNone;  ///< text() says it in words
+  std::size_t goal_index = 0;        ///< index of the goal that the robot is driving to
+  bool is_over = false;              ///< complete, replaced or refused; for zones: coordinators remember it
 
   bool operator==(const OrderState& other) const {
     return phase == other.phase && refusal == other.refusal && goal_index == other.goal_index &&

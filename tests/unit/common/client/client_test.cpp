@@ -6,7 +6,9 @@
 #include <future>
 #include <limits>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 #include "common/messaging/dds/bus.hpp"
@@ -94,6 +96,18 @@ class FakeCoordinator {
 };
 
 TEST_CASE("the library has the version of the programs") { CHECK(std::string(version()) == kVersion); }
+
+TEST_CASE("every refusal has its own words") {
+  CHECK(std::string(text(Refusal::kNone)).empty());
+  CHECK(std::string(text(Refusal::kOutsideField)) == "a goal is outside the field");
+  std::set<std::string> texts;
+  for (const Refusal refusal : {Refusal::kMalformed, Refusal::kUnknownRobot, Refusal::kOutsideField,
+                                Refusal::kTooMany, Refusal::kUnknownZone}) {
+    CHECK_FALSE(std::string(text(refusal)).empty());
+    texts.insert(text(refusal));
+  }
+  CHECK(texts.size() == 5);
+}
 
 TEST_CASE("a client repeats an order until a coordinator answers") {
   const TestDomain domain;
