@@ -50,12 +50,15 @@ void add_options(const CliCommand& app, Options& options) {
       .show_default();
 }
 
-/// `bases` is null unless the driver is `velocity`.
+/// `bases` is null unless the driver is `velocity`. Throws std::logic_error if the driver has a name that
+/// add_options() accepts and this function does not know.
 std::unique_ptr<Driver> make_driver(DdsBus& bus, Bus* bases, const Scenario& scenario,
                                     const std::vector<RobotId>& robots, const Options& options) {
   if (bases) return std::make_unique<VelocityDriver>(*bases, robots, options.bases.topic_prefix);
   if (options.driver == "skeleton")
     return std::make_unique<SkeletonDriver>(robots, [&bus] { return bus.now(); });
+  if (options.driver != "league")
+    throw std::logic_error("--driver: make_driver() of robot_main.cpp does not know " + options.driver);
   const LeaguePorts ports{league::parse_unicast_endpoint(options.blue),
                           league::parse_unicast_endpoint(options.yellow)};
   auto driver = std::make_unique<LeagueDriver>(scenario, robots, ports);
