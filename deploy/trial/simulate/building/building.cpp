@@ -50,12 +50,14 @@ void require_room(const Scenario& scenario, int robots) {
 
 std::string text_of(const Vec2& p) { return fmt::format("[{:.3f}, {:.3f}]", p.x(), p.y()); }
 
-std::string scenario_text(const BuildingOptions& options, const Scenario& scenario) {
+std::string scenario_text(const BuildingOptions& options, const Scenario& scenario,
+                          const std::function<void(const std::string&)>& announce) {
   Rng rng(options.seed);
   PositionSampler positions(scenario, rng);
   // One set of positions for the starts and one for each goal. Robots at a set's positions are apart.
   std::vector<std::vector<Vec2>> places;
   for (int i = 0; i <= options.goals; ++i) {
+    announce(i == 0 ? "finding starts" : fmt::format("finding goals, {} of {}", i, options.goals));
     std::vector<Vec2> taken;
     for (int robot = 0; robot < options.robots; ++robot) taken.push_back(positions.sample_apart(taken));
     places.push_back(std::move(taken));
@@ -76,7 +78,11 @@ std::string scenario_text(const BuildingOptions& options, const Scenario& scenar
 
 }  // namespace
 
-void write_building(const BuildingOptions& options) {
+void write_building(const BuildingOptions& options,
+                    const std::function<void(const std::string& step)>& on_step) {
+  const auto announce = [&](const std::string& step) {
+    if (on_step) on_step(step);
+  };
   // Creates the folder first, because generating the building takes seconds.
   create_folder(options.folder);
   Scenario scenario;
@@ -86,10 +92,13 @@ void write_building(const BuildingOptions& options) {
   grid.columns = grid.rows = options.cells;
   grid.resolution_m = options.resolution_m;
   grid.origin_m = {-side_m / 2, -side_m / 2};
+  announce("drawing the floor plan");
   const OccupancyMap map = make_floor_plan(options.seed, grid, plan_settings(options.kind));
+  announce("measuring the room for robots");
   scenario.map = std::make_shared<const FloorMap>(map);
   require_room(scenario, options.robots);
-  const std::string text = scenario_text(options, scenario);
+  const std::string text = scenario_text(options, scenario, announce);
+  announce("writing the files");
   const std::filesystem::path folder(options.folder);
   write_occupancy_map(map, (folder / "map").string());
   write_file((folder / "scenario.yaml").string(), text);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct BuildingOptions {
 /// Writes a random building into a folder, which it creates: its map as `map.yaml` and `map.pgm`, and
 /// `scenario.yaml` with robots and goals at random reachable places. The same options give the same files.
 /// Throws std::invalid_argument if the building has no room for this number of robots, and std::runtime_error
-/// if a file cannot be written.
-void write_building(const BuildingOptions& options);
+/// if a file cannot be written. A large building takes many seconds; each step is announced before it begins.
+void write_building(const BuildingOptions& options,
+                    const std::function<void(const std::string& step)>& on_step = {});
 
 }  // namespace sidestep

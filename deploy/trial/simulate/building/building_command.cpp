@@ -2,13 +2,43 @@
 #include "deploy/trial/simulate/building/building_command.hpp"
 
 #include <memory>
+#include <unistd.h>
 
 #include "common/file/console.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/output_paths.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 #include "deploy/trial/simulate/building/building.hpp"
 
 namespace sidestep {
+namespace {
+
+/// Shows on stderr what is being done: in a terminal by one line that is redrawn and cleared at the end,
+/// elsewhere by one line for each step.
+class BuildingProgress {
+ public:
+  BuildingProgress() = default;
+  ~BuildingProgress() {
+    if (can_redraw_) print_to(stderr, "{}", kEraseLine);
+  }
+  BuildingProgress(const BuildingProgress&) = delete;
+  BuildingProgress& operator=(const BuildingProgress&) = delete;
+
+  void show(const std::string& step) const {
+    print_to(stderr, "{}", can_redraw_ ? redrawn_line(step, STDERR_FILENO) : step + "\n");
+  }
+
+ private:
+  const bool can_redraw_ = terminal_of(STDERR_FILENO).can_redraw;
+};
+
+void build(const BuildingOptions& options) {
+  const BuildingProgress progress;
+  write_building(options, [&](const std::string& step) { progress.show(step); });
+}
+
+}  // namespace
 
 void add_building_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<BuildingOptions>();
@@ -35,7 +65,7 @@ void add_building_command(const CliCommand& root, std::function<int()>& action) 
     for (const char* file : {"map.yaml", "map.pgm", "scenario.yaml"})
       require_new_output({"FOLDER", options->folder + "/" + file}, *overwrites);
     action = [options] {
-      write_building(*options);
+      build(*options);
       print_output("{0}/map.yaml, {0}/map.pgm, {0}/scenario.yaml\n", options->folder);
       return 0;
     };

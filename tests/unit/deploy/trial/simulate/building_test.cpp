@@ -111,6 +111,17 @@ TEST_CASE("the same options give the same building, and a different seed gives a
   CHECK(folder.text("map.pgm") != map);
 }
 
+TEST_CASE("each step of making a building is announced before it begins") {
+  const Folder folder;
+  BuildingOptions options = small_building(folder);
+  options.goals = 2;
+  std::vector<std::string> steps;
+  write_building(options, [&](const std::string& step) { steps.push_back(step); });
+  CHECK(steps == std::vector<std::string>{"drawing the floor plan", "measuring the room for robots",
+                                          "finding starts", "finding goals, 1 of 2", "finding goals, 2 of 2",
+                                          "writing the files"});
+}
+
 TEST_CASE("a building without room for its robots is rejected") {
   const Folder folder;
   BuildingOptions options = small_building(folder);
