@@ -4,6 +4,8 @@
 #include <atomic>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
 #include <thread>
 
 #include "common/config/scenario_loader.hpp"
@@ -53,6 +55,20 @@ TEST_CASE("the monitor's server answers errors of its API in JSON") {
   CHECK(run.error(run.request("GET", "/api/nothing", "")) == "there is no /api/nothing");
   CHECK(run.request("POST", "/api/hold", "wrong").status == 401);
   CHECK_THAT(run.error(run.request("POST", "/api/hold", "wrong")), StartsWith("the header 'Authorization"));
+}
+
+TEST_CASE("whatever the monitor's page names is served, and it names an icon") {
+  ServedRun run;
+  const std::string page = run.request("GET", "/", "").body;
+  CHECK_THAT(page, ContainsSubstring("rel=\"icon\""));
+  const std::regex reference("(?:href|src)=\"(/[^\"]*)\"");
+  int references = 0;
+  for (std::sregex_iterator i(page.begin(), page.end(), reference), end; i != end; ++i, ++references) {
+    const std::string path = (*i)[1];
+    CAPTURE(path);
+    CHECK(run.request("GET", path, "").status == 200);
+  }
+  CHECK(references >= 3);
 }
 
 TEST_CASE("when the run is over, its page still shows it, but commands are refused") {
