@@ -56,7 +56,7 @@ int apply(const NetworkOptions& options) {
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
   const std::vector<std::string> impaired =
-      wait_for_targets(channel, target->participant, "; start the run with --faults");
+      wait_for_targets(channel, options.dds, target->participant, "; start the run with --faults");
   send(channel, fault);
   int output_error = write_text(stdout, fmt::format("applied to {}\n", fmt::join(impaired, ", ")));
   if (options.seconds) {

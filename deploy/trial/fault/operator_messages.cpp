@@ -10,6 +10,7 @@
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/presence.hpp"
 #include "common/messaging/operator_header.hpp"
+#include "common/process/network_text.hpp"
 #include "deploy/trial/fault/fault_target.hpp"
 
 namespace sidestep {
@@ -35,8 +36,8 @@ bool wait_until(Condition condition) {
 
 }  // namespace
 
-std::vector<std::string> wait_for_targets(OperatorChannel& channel, const std::string& participant,
-                                          const std::string& remedy) {
+std::vector<std::string> wait_for_targets(OperatorChannel& channel, const DdsSettings& dds,
+                                          const std::string& participant, const std::string& remedy) {
   std::vector<std::string> found;
   Time changed_at = EventLoop::now();
   const bool is_complete = wait_until([&] {
@@ -49,10 +50,9 @@ std::vector<std::string> wait_for_targets(OperatorChannel& channel, const std::s
   });
   if (participant.empty() && !found.empty()) return found;
   if (is_complete) return {participant};
-  throw std::runtime_error(fmt::format("{} on this domain and interface accepts these faults{}{}",
-                                       participant.empty() ? "no process" : "no " + participant,
-                                       found.empty() ? "" : fmt::format(", only {}", fmt::join(found, ", ")),
-                                       remedy));
+  throw std::runtime_error(fmt::format(
+      "{} accepts these faults {}{}{}", participant.empty() ? "no process" : "no " + participant,
+      network_text(dds), found.empty() ? "" : fmt::format(", only {}", fmt::join(found, ", ")), remedy));
 }
 
 void wait_for_writer(OperatorChannel& channel, const std::string& topic, const std::string& error) {

@@ -62,12 +62,12 @@ int disturb(const RobotOptions& options, Kind kind) {
   DdsBus bus(answers);
   OperatorChannel channel(options.dds, topics::kDisturbance);
   DisturbanceClient client(bus, channel.writer());
-  (void)wait_for_targets(channel, "sidestep-simulator");
+  (void)wait_for_targets(channel, options.dds, "sidestep-simulator");
   wait_for_writer(channel, channel_name(topics::kFeedback, options.robot),
                   fmt::format("no robot {} in this run", options.robot));
   // The robot's agent must request the rest version at this position.
   if (kind == Kind::DISTURBANCE_PLACE)
-    (void)wait_for_targets(channel, fmt::format("agent-{}", options.robot));
+    (void)wait_for_targets(channel, options.dds, fmt::format("agent-{}", options.robot));
   std::optional<msg::DisturbanceResult> answer;
   client.send(disturbance_from(options, kind), [&](const std::optional<msg::DisturbanceResult>& result) {
     answer = result;
