@@ -24,21 +24,25 @@ constexpr std::int64_t kMaxPlainNumber = 1 << 15;
 /// Entity ids of handshake messages (DDS Security 1.1, 7.4.3), whose sequence numbers count participants.
 constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x000201c4;
 
-/// Removes the ids of reader and writer from the front. Returns whether they are a known pair for discovery
-/// or for handshakes, and sets `is_handshake` for the latter. The reader may be unspecified.
-bool read_entity_ids(NumberReader& reader, bool& is_handshake) {
-  const std::uint32_t to = reader.identifier(), from = reader.identifier();
-  if (!reader.is_valid()) return false;
-  is_handshake = from == kHandshakeWriter;
-  if (is_handshake) return to == 0 || to == kHandshakeReader;
-  const auto known = std::ranges::find(fast_dds::kPlainDiscovery, from, &fast_dds::DiscoveryPair::writer);
-  if (known == fast_dds::kPlainDiscovery.end()) return false;
-  return to == 0 || to == known->reader;
-}
+/// Entity ids of the endpoints for protected liveliness (DDS Security 1.1, 7.4.3). Fast DDS creates them for
+/// every participant with keys, but governance does not protect liveliness, so this writer has no messages.
+/// Its readers ask for a heartbeat several times a second until one arrives.
+constexpr std::uint32_t kSilentWriter = 0xff0200c2, kSilentReader = 0xff0200c7;
 
-bool take_discovery_entities(NumberReader& reader) {
-  bool is_handshake = false;
-  return read_entity_ids(reader, is_handshake) && !is_handshake;
+enum class WriterKind : std::uint8_t { kRefused, kDiscovery, kHandshake, kSilent };
+
+/// Removes the ids of reader and writer from the front. Returns the kind of the writer, or kRefused if its
+/// messages must be encrypted or the reader is not one of its readers. The reader may be unspecified, except
+/// for the silent writer.
+WriterKind read_entity_ids(NumberReader& reader) {
+  const std::uint32_t to = reader.identifier(), from = reader.identifier();
+  if (!reader.is_valid()) return WriterKind::kRefused;
+  if (from == kSilentWriter) return to == kSilentReader ? WriterKind::kSilent : WriterKind::kRefused;
+  if (from == kHandshakeWriter)
+    return to == 0 || to == kHandshakeReader ? WriterKind::kHandshake : WriterKind::kRefused;
+  const auto known = std::ranges::find(fast_dds::kPlainDiscovery, from, &fast_dds::DiscoveryPair::writer);
+  if (known == fast_dds::kPlainDiscovery.end()) return WriterKind::kRefused;
+  return to == 0 || to == known->reader ? WriterKind::kDiscovery : WriterKind::kRefused;
 }
 
 struct Submessage {
@@ -64,8 +68,9 @@ bool is_valid_data(NumberReader& reader, std::uint8_t flags) {
   const bool has_payload = (flags & kHasPayload) != 0, has_key = (flags & kHasKey) != 0;
   reader.number(2);
   if (reader.number(2) != kBytesToInlineQos || (has_payload && has_key)) return false;
-  bool is_handshake = false;
-  if (!read_entity_ids(reader, is_handshake)) return false;
+  const WriterKind writer = read_entity_ids(reader);
+  const bool is_handshake = writer == WriterKind::kHandshake;
+  if (!is_handshake && writer != WriterKind::kDiscovery) return false;
   reader.sequence_number(1, is_handshake ? std::numeric_limits<std::int64_t>::max() : kMaxPlainNumber);
   if ((flags & kHasInlineQos) != 0) reader.skip_parameters();
   if (!reader.is_valid() || (reader.left() > 0) != (has_payload || has_key)) return false;
@@ -75,31 +80,31 @@ bool is_valid_data(NumberReader& reader, std::uint8_t flags) {
 /// Whether a submessage contains exactly the fields of its kind, with numbers within bounds.
 bool is_valid_content(const Submessage& submessage) {
   NumberReader reader(submessage.body, (submessage.flags & kLittleEndianFlag) != 0);
+  if (submessage.kind == kDataSubmessage) return is_valid_data(reader, submessage.flags);
+  if (submessage.kind == kTimestampSubmessage) return submessage.body.size() == 8;
+  if (submessage.kind == kDestinationSubmessage) return submessage.body.size() == sizeof(ParticipantId);
+  const WriterKind writer = read_entity_ids(reader);
+  const bool is_silent = writer == WriterKind::kSilent;
+  if (!is_silent && writer != WriterKind::kDiscovery) return false;
   switch (submessage.kind) {
-    case kDataSubmessage:
-      return is_valid_data(reader, submessage.flags);
     case kAckNackSubmessage:
-      if (!take_discovery_entities(reader)) return false;
-      reader.sequence_number(0, kMaxPlainNumber);
-      reader.skip_bitmap();
+      // A reader of the silent writer has no message, and asks for none.
+      reader.sequence_number(0, is_silent ? 2 : kMaxPlainNumber);
+      if (is_silent && reader.number(4) != 0) return false;
+      if (!is_silent) reader.skip_bitmap();
       break;
     case kGapSubmessage:
-      if (!take_discovery_entities(reader)) return false;
+      if (is_silent) return false;
       reader.sequence_number(1, kMaxPlainNumber);
       reader.sequence_number(1, kMaxPlainNumber);
       reader.skip_bitmap();
       return reader.is_at_end();
     case kHeartbeatSubmessage: {
-      if (!take_discovery_entities(reader)) return false;
-      const std::int64_t first = reader.sequence_number(1, kMaxPlainNumber),
-                         last = reader.sequence_number(0, kMaxPlainNumber);
+      const std::int64_t first = reader.sequence_number(1, is_silent ? 2 : kMaxPlainNumber),
+                         last = reader.sequence_number(0, is_silent ? 1 : kMaxPlainNumber);
       if (last < first - 1) return false;
       break;
     }
-    case kTimestampSubmessage:
-      return submessage.body.size() == 8;
-    case kDestinationSubmessage:
-      return submessage.body.size() == sizeof(ParticipantId);
     default:
       return false;
   }

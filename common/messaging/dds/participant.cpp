@@ -126,6 +126,10 @@ void set_security_properties(const KeyFolder& keys, DomainParticipantQos& qos) {
   qos.user_data().setValue(credentials(keys.certificate, load_private_key(keys.file(key_files::kPrivateKey)),
                                        fast_dds_version(), keys.certificate.guid_prefix(candidate),
                                        EventLoop::now()));
+  // Governance does not protect discovery, so the endpoints for protected discovery would never be used.
+  auto& endpoints = qos.wire_protocol().builtin.discovery_config.m_simpleEDP;
+  endpoints.enable_builtin_secure_publications_writer_and_subscriptions_reader = false;
+  endpoints.enable_builtin_secure_subscriptions_writer_and_publications_reader = false;
 }
 
 DomainParticipantQos participant_qos(const DdsSettings& settings,

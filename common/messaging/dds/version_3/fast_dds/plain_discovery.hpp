@@ -12,15 +12,12 @@ struct DiscoveryPair {
 };
 
 /// The discovery writers whose messages Fast DDS 3 sends unencrypted. They announce participants, writers,
-/// readers and liveliness (RTPS 2.2, 9.3.1.2). With keys there are three more (DDS Security 1.1, 7.4.4): one
-/// announces participants to authenticated participants, and two send nothing, because governance does not
-/// protect discovery.
-constexpr std::array<DiscoveryPair, 7> kPlainDiscovery{{{0x000100c2, 0x000100c7},
+/// readers and liveliness (RTPS 2.2, 9.3.1.2). With keys, one more announces participants to authenticated
+/// participants (DDS Security 1.1, 7.4.4).
+constexpr std::array<DiscoveryPair, 5> kPlainDiscovery{{{0x000100c2, 0x000100c7},
                                                         {0x000003c2, 0x000003c7},
                                                         {0x000004c2, 0x000004c7},
                                                         {0x000200c2, 0x000200c7},
-                                                        {0xff0101c2, 0xff0101c7},
-                                                        {0xff0003c2, 0xff0003c7},
-                                                        {0xff0004c2, 0xff0004c7}}};
+                                                        {0xff0101c2, 0xff0101c7}}};
 
 }  // namespace sidestep::fast_dds

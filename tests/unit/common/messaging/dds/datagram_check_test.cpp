@@ -232,7 +232,41 @@ TEST_CASE("only discovery messages may be unencrypted") {
     // Key exchange, liveliness and discovery messages that must be encrypted.
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 2, 2, 0xc3}, {0xff, 2, 2, 0xc4})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 2, 0, 0xc2}, {0xff, 2, 0, 0xc7})})));
-    CHECK(passes(datagram({numbered(kind, 5, 0, {0xff, 0, 3, 0xc2})})) == is_version_3);
+    CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 0, 3, 0xc2})})));
+  }
+}
+
+TEST_CASE("the writer of protected liveliness has no messages, and its readers only ask for a heartbeat") {
+  const Bytes writer{0xff, 2, 0, 0xc2}, reader{0xff, 2, 0, 0xc7};
+  const auto ask = [&](std::uint32_t number, std::uint32_t bits = 0, std::uint32_t high = 0) {
+    return submessage(0x06, Body()
+                                .entities(writer, reader)
+                                .sequence_number(number, high)
+                                .u32(bits)
+                                .zeros((bits + 31) / 32 * 4)
+                                .u32(7));
+  };
+  const auto answer = [&](std::uint32_t first, std::uint32_t last) {
+    return submessage(0x07,
+                      Body().entities(writer, reader).sequence_number(first).sequence_number(last).u32(7));
+  };
+  CHECK(passes(datagram({submessage(0x0e, Body().zeros(12)), ask(0)})));
+  CHECK(passes(datagram({ask(1)})));  // after a heartbeat
+  CHECK(passes(datagram({answer(1, 0)})));
+  CHECK_FALSE(passes(datagram({ask(2)})));
+  CHECK_FALSE(passes(datagram({ask(0, 0, 1)})));
+  for (const std::uint32_t bits : {1u, 32u, 256u}) CHECK_FALSE(passes(datagram({ask(1, bits)})));
+  CHECK_FALSE(passes(datagram({answer(1, 1)})));
+  CHECK_FALSE(passes(datagram({answer(2, 1)})));
+  CHECK_FALSE(passes(datagram({answer(0, 0)})));
+  for (const std::uint8_t kind : {0x08, 0x15})
+    CHECK_FALSE(passes(datagram({numbered(kind, 1, 0, writer, reader)})));
+  // Only these two endpoints.
+  for (const std::uint8_t kind : {0x06, 0x07}) {
+    CHECK_FALSE(passes(datagram({numbered(kind, 1, 0, writer)})));
+    CHECK_FALSE(passes(datagram({numbered(kind, 1, 0, writer, {0, 2, 0, 0xc7})})));
+    CHECK_FALSE(passes(datagram({numbered(kind, 1, 0, {0, 2, 0, 0xc2}, reader)})));
+    CHECK_FALSE(passes(datagram({numbered(kind, 1, 0, {0xff, 2, 2, 0xc3}, {0xff, 2, 2, 0xc4})})));
   }
 }
 

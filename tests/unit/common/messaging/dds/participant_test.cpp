@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "common/file/write_file.hpp"
+#include "common/protocol/drop_counters.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/run/keys/permissions_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/test_keys.hpp"
@@ -49,6 +51,33 @@ TEST_CASE("with keys a process can write and read in the highest domain") {
   DdsBus bus(settings);
   CHECK_NOTHROW((void)bus.advertise(topics::kCommand, 3));
   CHECK_NOTHROW(bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {}));
+}
+
+TEST_CASE("two processes with keys refuse no datagram of each other") {
+  const TestKeys keys({"agent", "3", "vision"});
+  DdsBus agent(settings_with(keys));
+  DdsSettings settings = settings_with(keys);
+  settings.identity = {Role::kVision};
+  DdsBus vision(settings);
+  // Lasts most of a second. Fast DDS repeats unanswered questions every 70 ms.
+  constexpr int kWorlds = 200;
+  int received = 0;
+  agent.subscribe<msg::WorldState>(topics::kWorld, [&](const msg::WorldState&) { ++received; });
+  auto writer = vision.advertise(topics::kWorld);
+  msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  REQUIRE(run_until(
+      [&] {
+        writer.publish(world, vision.now());
+        return received >= kWorlds;
+      },
+      agent, vision));
+  for (const DdsBus* bus : {&agent, &vision}) {
+    DropCounters drops;
+    bus->count_drops(drops);
+    CHECK(drops.total(DropReason::kMalformedDatagram) == 0);
+    CHECK(drops.total(DropReason::kForgedSender) == 0);
+  }
 }
 
 /// The document without the domains above `max`.
