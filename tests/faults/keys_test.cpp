@@ -131,6 +131,21 @@ void use_own_permissions(AttackerSettings& settings, const TestKeys& others) {
                                                certificate.not_before(), certificate.not_after())));
 }
 
+/// Number of datagrams that all processes of a run refused because of their form.
+std::uint64_t malformed_datagrams(const nlohmann::json& report) {
+  std::uint64_t result = 0;
+  for (const auto& [process, counts] : report["counters"].items())
+    result += counts.value("malformed_datagram", std::uint64_t{0});
+  return result;
+}
+
+TEST_CASE("without attacks, the processes of a run with keys refuse no datagram of each other") {
+  KeyedRun keyed;
+  keyed.check_operator_orders();
+  CHECK(malformed_datagrams(keyed.run.report()) == 0);
+  CHECK_FALSE(keyed.run.printed("refused:"));
+}
+
 TEST_CASE("without keys, an order from any process on the network moves a robot") {
   LaunchedRun run(kThreeWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
@@ -390,9 +405,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   keyed.check_operator_orders();
   const nlohmann::json report = run.report();
   CHECK(report["deaths"].empty());
-  std::uint64_t dropped = 0;
-  for (const auto& [process, counts] : report["counters"].items())
-    dropped += counts.value("malformed_datagram", std::uint64_t{0});
+  const std::uint64_t dropped = malformed_datagrams(report);
   CHECK(dropped > 0);
   WARN(captured.size() << " datagrams captured, " << replayed << " replayed, " << changed << " altered, "
                        << dropped << " dropped as malformed; orders carried out: " << carried_out);
