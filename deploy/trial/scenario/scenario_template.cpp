@@ -7,7 +7,7 @@ namespace sidestep {
 namespace {
 
 /// The pages that the template names.
-constexpr const char *kKeysPage = "deploy/scenarios/README.md", *kMapPage = "common/map/README.md";
+constexpr const char *kScenarioPage = "deploy/scenarios/README.md", *kMapPage = "common/map/README.md";
 
 constexpr const char* kTemplate =
     R"yaml(# A floor with a wall, a door in it, and three robots that pass it. Lengths are in metres, positions are [x, y] from the
@@ -70,7 +70,7 @@ std::string with_installed_page(std::string text, const std::string& page) {
 
 std::string scenario_template(const std::string& schema_path) {
   return (schema_path.empty() ? "" : "# yaml-language-server: $schema=" + schema_path + "\n") +
-         with_installed_page(with_installed_page(kTemplate, kKeysPage), kMapPage);
+         with_installed_page(with_installed_page(kTemplate, kScenarioPage), kMapPage);
 }
 
 }  // namespace sidestep
