@@ -233,7 +233,7 @@ TEST_CASE(
     "a failed start names the process and the reason, and an invalid scenario is refused before anything "
     "starts") {
   LaunchedRun unreachable(shipped_scenario("crossing"), {"--interface", "192.0.2.77"});
-  CHECK(unreachable.wait_for_end() == "exit code 1");
+  CHECK(unreachable.wait_for_end() == "exit code 2");
   INFO(unreachable.output());
   CHECK(unreachable.printed("192.0.2.77"));
 
