@@ -72,12 +72,12 @@ void require_valid_documents(const KeyFolder& keys, const RevocationList& revoke
 /// Whether the folder made by `sidestep keys init` says that keys of this identity were revoked. Copies of
 /// such a folder on other hosts may not say it.
 bool were_revoked(const std::string& store, const Identity& identity) {
-  const std::string publicly = store + "/public/";
+  const std::string in_public = store + "/public/";
   std::error_code none;
   try {
-    const Certificate authority = Certificate::load(publicly + key_files::kIdentityAuthority);
-    for (const std::string& serial : load_revoked_serials(publicly + key_files::kRevoked, authority)) {
-      const std::string file = fmt::format("{}{}/{}.pem", publicly, key_files::kIssued, serial);
+    const Certificate authority = Certificate::load(in_public + key_files::kIdentityAuthority);
+    for (const std::string& serial : load_revoked_serials(in_public + key_files::kRevoked, authority)) {
+      const std::string file = fmt::format("{}{}/{}.pem", in_public, key_files::kIssued, serial);
       if (!fs::is_regular_file(file, none)) continue;
       const auto other = Certificate::load(file).identity();
       if (other && other->role == identity.role && other->name == identity.name &&

@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "common/file/console.hpp"
+#include "common/file/similar_name.hpp"
 #include "common/process/exit_code.hpp"
 #include "common/process/help/app_info.hpp"
 #include "common/process/help/completion.hpp"
 #include "common/process/help/help_text.hpp"
 #include "common/process/help/man_page.hpp"
 #include "common/process/number_text.hpp"
-#include "common/process/similar_name.hpp"
 #include "common/version/version.hpp"
 
 namespace sidestep {

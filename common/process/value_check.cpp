@@ -6,8 +6,8 @@
 #include <fmt/ranges.h>
 #include <utility>
 
+#include "common/file/similar_name.hpp"
 #include "common/process/number_text.hpp"
-#include "common/process/similar_name.hpp"
 
 namespace sidestep {
 namespace {

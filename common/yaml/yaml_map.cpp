@@ -9,7 +9,7 @@
 #include <set>
 #include <string_view>
 
-#include "common/process/similar_name.hpp"
+#include "common/file/similar_name.hpp"
 #include "common/yaml/config_error.hpp"
 #include "common/yaml/heading.hpp"
 #include "common/yaml/plus_sign.hpp"

@@ -5,7 +5,7 @@
 #include <fmt/ranges.h>
 #include <vector>
 
-#include "common/process/similar_name.hpp"
+#include "common/file/similar_name.hpp"
 
 namespace sidestep {
 

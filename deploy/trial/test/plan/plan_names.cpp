@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "common/process/similar_name.hpp"
+#include "common/file/similar_name.hpp"
 #include "common/yaml/yaml_schema.hpp"
 
 namespace sidestep {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/process/similar_name.hpp"
+#include "common/file/similar_name.hpp"
 
 #include <algorithm>
 #include <cctype>
