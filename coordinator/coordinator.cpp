@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/messaging/observation_codec.hpp"
 #include "common/motion/rest.hpp"
 
 namespace sidestep {
@@ -295,14 +296,7 @@ msg::CoordinatorState Coordinator::state() const {
     notice.is_displaced(displaced_.contains(robot));
     const auto seen = displaced_.last_observation(robot);
     notice.is_silent(record.silent && seen);
-    if (is_uncontrolled(notice)) {
-      notice.observed_at_ns(to_ns(seen->observed_at));
-      notice.x_m(seen->position_m.x());
-      notice.y_m(seen->position_m.y());
-      notice.vx_mps(seen->velocity_mps.x());
-      notice.vy_mps(seen->velocity_mps.y());
-      notice.position_variance_m2(seen->position_variance_m2);
-    }
+    if (is_uncontrolled(notice)) encode(*seen, notice);
     if (is_missing || notice.is_quarantined() || is_uncontrolled(notice)) state.notices().push_back(notice);
   }
   return state;

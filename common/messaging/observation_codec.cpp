@@ -41,4 +41,19 @@ std::optional<RobotObservation> decode(const msg::RobotNotice& message, Time now
                  now);
 }
 
+void encode(const RobotObservation& observation, msg::RobotNotice& message) {
+  constexpr double kBelowMaxSpeed_mps = kMaxSpeed_mps * (1 - 1e-9);  // also after rounding
+  const double speed_mps = observation.velocity_mps.norm();
+  const Vec2 velocity_mps = speed_mps > kBelowMaxSpeed_mps
+                                ? Vec2(observation.velocity_mps * (kBelowMaxSpeed_mps / speed_mps))
+                                : observation.velocity_mps;
+  message.robot(observation.robot);
+  message.observed_at_ns(to_ns(observation.observed_at));
+  message.x_m(observation.position_m.x());
+  message.y_m(observation.position_m.y());
+  message.vx_mps(velocity_mps.x());
+  message.vy_mps(velocity_mps.y());
+  message.position_variance_m2(observation.position_variance_m2);
+}
+
 }  // namespace sidestep

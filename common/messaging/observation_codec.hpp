@@ -15,5 +15,8 @@ namespace sidestep {
 /// Decodes the place of a displaced or silent robot from an untrusted message, with the same checks.
 /// Precondition: is_uncontrolled(message).
 [[nodiscard]] std::optional<RobotObservation> decode(const msg::RobotNotice& message, Time now);
+/// Writes the place of a displaced or silent robot. Limits the speed to what receivers accept: a position
+/// that jumps between two observations looks like any speed.
+void encode(const RobotObservation& observation, msg::RobotNotice& message);
 
 }  // namespace sidestep

@@ -317,6 +317,24 @@ TEST_CASE("a displaced robot's position is published after every world state") {
   CHECK(drops_of(floor.bus).total(DropReason::kForgedSender) == 1);
 }
 
+TEST_CASE("a displaced robot whose position jumps is named with a speed that agents accept") {
+  Floor floor;
+  floor.register_both();
+  msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  auto& robot = world.robots().emplace_back();
+  robot.robot(1);
+  robot.observed_at_ns(to_ns(floor.network.now()));
+  floor.send(topics::kWorld, world);
+  world.robots()[0].observed_at_ns(world.robots()[0].observed_at_ns() + 1);
+  world.robots()[0].observed_x_m(1);
+  floor.send(topics::kWorld, world);
+  REQUIRE(floor.state.notices().size() == 1);
+  CHECK(floor.state.notices()[0].is_displaced());
+  CHECK(floor.state.notices()[0].vx_mps() > 99);
+  CHECK(decode(floor.state, floor.network.now()));
+}
+
 TEST_CASE("a world state from the future is counted, displaces no robot and does not count as watching") {
   Floor floor;
   floor.register_both();

@@ -16,6 +16,7 @@
 #include "deploy/trial/simulate/campaign/reception_sampler.hpp"
 #include "deploy/trial/simulate/campaign/robot_ends.hpp"
 #include "deploy/trial/simulate/campaign/scene_sampler.hpp"
+#include "deploy/trial/simulate/campaign/sent_messages.hpp"
 
 namespace sidestep {
 namespace {
@@ -202,6 +203,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   SimSystem system(trial.scenario, trial.seed, trial.plan.clocks, SimSystem::kBegin, trial.base_latency);
   DistanceMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecoveryTime, trial.duration));
   system.on_truth([&](const msg::GroundTruth& truth) { meter.add(truth); });
+  const SentMessages sent(system.observer_bus(), trial.scenario);
   if (hooks.on_start) hooks.on_start(system);
   FaultPlayer player(system, trial.scenario, trial.plan);
   player.run_until(trial.duration - std::min(trial.duration, kMaxRobotWait));
@@ -221,6 +223,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   }
   add_failures(judged, progress, system.metrics().all_arrived(), final_report, result);
   std::ranges::copy(player.order_failures(), std::back_inserter(result.failures));
+  std::ranges::copy(sent.failures(), std::back_inserter(result.failures));
   if (report) {
     *report = final_report;
     report->trace = system.metrics().floor_trace();

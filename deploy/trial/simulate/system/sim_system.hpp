@@ -84,6 +84,8 @@ class SimSystem {
   Time begin() const { return begin_; }
   SimNetwork& network() { return network_; }
   RunMetrics& metrics() { return metrics_; }
+  /// Receives every message of the system's processes, even lost ones, without delay.
+  Bus& observer_bus() { return observer_bus_; }
   /// Calls back with every ground truth, after the metrics have received it.
   void on_truth(std::function<void(const msg::GroundTruth&)> callback) { on_truth_ = std::move(callback); }
   const RunMetrics& metrics() const { return metrics_; }
