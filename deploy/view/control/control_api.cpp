@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -42,18 +43,28 @@ WebResponse error_response(unsigned status, const std::string& error) {
   return json_response(status, {{"error", error}});
 }
 
-/// Splits a path: "/api/robots/3/order" becomes ["robots", "3", "order"].
-std::vector<std::string> parts_of(const std::string& path) {
-  constexpr std::string_view kPrefix = "/api/";
+/// Splits at slashes: "robots/3/order" becomes ["robots", "3", "order"].
+std::vector<std::string> split(std::string_view rest) {
   std::vector<std::string> parts;
-  if (!path.starts_with(kPrefix)) return parts;
-  std::string_view rest = std::string_view(path).substr(kPrefix.size());
   while (true) {
     const std::size_t slash = rest.find('/');
     parts.emplace_back(rest.substr(0, slash));
     if (slash == std::string_view::npos) return parts;
     rest.remove_prefix(slash + 1);
   }
+}
+
+/// The parts of a path below "/api/"; none if it is elsewhere.
+std::vector<std::string> parts_of(std::string_view path) {
+  constexpr std::string_view kPrefix = "/api/";
+  return path.starts_with(kPrefix) ? split(path.substr(kPrefix.size())) : std::vector<std::string>{};
+}
+
+/// Whether a path has these parts. "*" in the pattern stands for any part.
+bool matches(std::string_view pattern, std::span<const std::string> parts) {
+  return std::ranges::equal(split(pattern), parts, [](const std::string& expected, const std::string& part) {
+    return expected == "*" || expected == part;
+  });
 }
 
 template <typename Number>
@@ -173,20 +184,6 @@ WebResponse fault_response(RobotId robot, const std::optional<msg::DisturbanceRe
   return error_response(status, refusal_text(robot, *result));
 }
 
-/// The methods with which the path is a command; null if it is none.
-const char* methods_of(std::span<const std::string> path) {
-  constexpr std::array<std::string_view, 3> kForAll{"hold", "resume", "bookmark"};
-  constexpr std::array<std::string_view, 5> kForRobots{"order", "cancel", "hold", "resume", "fault"};
-  const auto is_in = [](const auto& names, const std::string& word) {
-    return std::ranges::find(names, word) != names.end();
-  };
-  if (path.size() == 1) return is_in(kForAll, path[0]) ? "POST" : nullptr;
-  if (path.size() == 2 && path[0] == "zones") return "POST or DELETE";
-  if (path.size() == 2 && path[0] == "recording")
-    return path[1] == "start" || path[1] == "stop" ? "POST" : nullptr;
-  return path.size() == 3 && path[0] == "robots" && is_in(kForRobots, path[2]) ? "POST" : nullptr;
-}
-
 WebResponse accepted(OrderHandle handle) { return json_response(200, {{"order", handle}}); }
 
 }  // namespace
@@ -202,22 +199,22 @@ ControlApi::~ControlApi() { disturbances_.give_up(); }
 bool ControlApi::respond(const WebRequest& request, const WebReply& reply) {
   const std::vector<std::string> path = parts_of(request.path);
   if (path.empty()) return false;
-  if (request.method == "GET") {
-    if (const char* const method = methods_of(path)) {
-      reply(error_response(405, fmt::format("use {}", method)));
-      return true;
-    }
+  std::vector<const Route*> routes;
+  for (const Route& route : all_routes())
+    if (matches(route.path, path)) routes.push_back(&route);
+  const bool is_get = request.method == "GET";
+  if (is_get && routes.empty()) {
     if (path.size() != 2 || path[0] != "orders") return false;
     const auto handle = parse_number<OrderHandle>(path[1]);
     reply(handle ? order_state(*handle) : error_response(404, "expected the number of an order"));
     return true;
   }
-  if (!request.command_refusal.empty()) {
+  if (!is_get && !request.command_refusal.empty()) {
     reply(error_response(401, request.command_refusal));
     return true;
   }
   try {
-    if (const auto response = command(request, path, reply)) reply(*response);
+    if (const auto response = command(request, path, routes, reply)) reply(*response);
   } catch (const BodyError& error) {
     reply(error_response(400, error.what()));
   }
@@ -225,28 +222,58 @@ bool ControlApi::respond(const WebRequest& request, const WebReply& reply) {
 }
 
 std::optional<WebResponse> ControlApi::command(const WebRequest& request, std::span<const std::string> path,
-                                               const WebReply& reply) {
-  if (path.size() == 2 && path[0] == "zones")
-    if (const auto number = parse_number<std::uint32_t>(path[1])) return command_zone(*number, request);
-  if (request.method != "POST") return error_response(405, "use POST");
-  if (path.size() == 1 && path[0] == "hold") return accepted(client_.hold(kAllRobots));
-  if (path.size() == 1 && path[0] == "resume") return accepted(client_.resume(kAllRobots));
-  if (path.size() == 1 && path[0] == "bookmark") {
-    const Json text = parse_body(request.body).value("text", Json(""));
-    if (!text.is_string()) throw BodyError("text: expected a text");
-    hooks_.bookmark(text.get<std::string>());
-    return json_response(200, Json::object());
+                                               std::span<const Route* const> routes, const WebReply& reply) {
+  if (routes.empty()) return error_response(404, "there is no " + request.path);
+  const auto route = std::ranges::find(routes, request.method, &Route::method);
+  if (route == routes.end()) {
+    std::vector<std::string_view> methods;
+    std::ranges::transform(routes, std::back_inserter(methods), &Route::method);
+    return error_response(405, fmt::format("use {}", fmt::join(methods, " or ")));
   }
-  if (path.size() == 2 && path[0] == "recording" && (path[1] == "start" || path[1] == "stop"))
-    return record(path[1] == "start");
-  if (path.size() == 3 && path[0] == "robots") {
-    const auto robot = parse_number<RobotId>(path[1]);
-    if (!robot || *robot >= kMaxRobots) return error_response(404, "there is no robot " + path[1]);
-    if (path[2] != "fault") return command_robot(*robot, path[2], request.body);
-    disturb(*robot, request.body, reply);
-    return std::nullopt;
-  }
-  return error_response(404, "there is no " + request.path);
+  const bool is_robot = path[0] == "robots";
+  std::optional<std::uint32_t> number = 0;
+  if (is_robot || path[0] == "zones") number = parse_number<std::uint32_t>(path[1]);
+  if (!number || (is_robot && *number >= kMaxRobots))
+    return error_response(404, fmt::format("there is no {} {}", is_robot ? "robot" : "zone", path[1]));
+  return (*route)->answer(*this, {*number, request.body, reply});
+}
+
+std::span<const ControlApi::Route> ControlApi::all_routes() {
+  using Answer = std::optional<WebResponse>;
+  using Api = ControlApi;
+  static constexpr auto kRoutes = std::to_array<Route>({
+      {"POST", "hold",
+       [](Api& api, const Command&) -> Answer { return accepted(api.client_.hold(kAllRobots)); }},
+      {"POST", "resume",
+       [](Api& api, const Command&) -> Answer { return accepted(api.client_.resume(kAllRobots)); }},
+      {"POST", "bookmark", [](Api& api, const Command& c) -> Answer { return api.bookmark(c.body); }},
+      {"POST", "recording/start", [](Api& api, const Command&) -> Answer { return api.record(true); }},
+      {"POST", "recording/stop", [](Api& api, const Command&) -> Answer { return api.record(false); }},
+      {"POST", "zones/*",
+       [](Api& api, const Command& c) -> Answer { return api.set_zone(c.number, c.body); }},
+      {"DELETE", "zones/*", [](Api& api, const Command& c) -> Answer { return api.remove_zone(c.number); }},
+      {"POST", "robots/*/order",
+       [](Api& api, const Command& c) -> Answer { return api.go(c.number, c.body); }},
+      {"POST", "robots/*/cancel",
+       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.cancel(c.number)); }},
+      {"POST", "robots/*/hold",
+       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.hold(c.number)); }},
+      {"POST", "robots/*/resume",
+       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.resume(c.number)); }},
+      {"POST", "robots/*/fault",
+       [](Api& api, const Command& c) -> Answer {
+         api.disturb(c.number, c.body, c.reply);
+         return std::nullopt;
+       }},
+  });
+  return kRoutes;
+}
+
+WebResponse ControlApi::bookmark(const std::string& body) {
+  const Json text = parse_body(body).value("text", Json(""));
+  if (!text.is_string()) throw BodyError("text: expected a text");
+  hooks_.bookmark(text.get<std::string>());
+  return json_response(200, Json::object());
 }
 
 WebResponse ControlApi::record(bool begins) {
@@ -259,11 +286,7 @@ WebResponse ControlApi::record(bool begins) {
   }
 }
 
-WebResponse ControlApi::command_robot(RobotId robot, const std::string& what, const std::string& body) {
-  if (what == "cancel") return accepted(client_.cancel(robot));
-  if (what == "hold") return accepted(client_.hold(robot));
-  if (what == "resume") return accepted(client_.resume(robot));
-  if (what != "order") return error_response(404, "robots have no " + what);
+WebResponse ControlApi::go(RobotId robot, const std::string& body) {
   const Json json = parse_body(body);
   require_known_keys(json, {"goals"});
   std::vector<Goal> goals;
@@ -274,10 +297,8 @@ WebResponse ControlApi::command_robot(RobotId robot, const std::string& what, co
   return accepted(client_.go(robot, std::move(goals)));
 }
 
-WebResponse ControlApi::command_zone(std::uint32_t number, const WebRequest& request) {
-  if (request.method == "DELETE") return remove_zone(number);
-  if (request.method != "POST") return error_response(405, "use POST or DELETE");
-  const Json json = parse_body(request.body);
+WebResponse ControlApi::set_zone(std::uint32_t number, const std::string& body) {
+  const Json json = parse_body(body);
   require_known_keys(json, {"corners", "radius_m", "speed_limit_mps"});
   Zone zone;
   for (const std::vector<double>& point : points_in(json, "corners", kMaxZoneCorners, 2))

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "common/client/disturbance_client.hpp"
 #include "common/client/order_client.hpp"
@@ -54,11 +56,25 @@ class ControlApi {
   [[nodiscard]] bool respond(const WebRequest& request, const WebReply& reply);
 
  private:
-  /// nullopt: the reply is sent later.
+  struct Command {
+    std::uint32_t number;  ///< of the robot or zone in the path; 0: the path names none
+    const std::string& body;
+    const WebReply& reply;
+  };
+  struct Route {
+    std::string_view method;
+    std::string_view path;  ///< below "/api/"; "*" stands for a number
+    /// Returns nullopt if the reply is sent later.
+    std::optional<WebResponse> (*answer)(ControlApi& api, const Command& command);
+  };
+  /// All commands.
+  static std::span<const Route> all_routes();
+  /// `routes`: those of the path. Returns nullopt if the reply is sent later.
   std::optional<WebResponse> command(const WebRequest& request, std::span<const std::string> path,
-                                     const WebReply& reply);
-  WebResponse command_robot(RobotId robot, const std::string& what, const std::string& body);
-  WebResponse command_zone(std::uint32_t number, const WebRequest& request);
+                                     std::span<const Route* const> routes, const WebReply& reply);
+  WebResponse bookmark(const std::string& body);
+  WebResponse go(RobotId robot, const std::string& body);
+  WebResponse set_zone(std::uint32_t number, const std::string& body);
   WebResponse remove_zone(std::uint32_t number);
   WebResponse record(bool begins);
   void disturb(RobotId robot, const std::string& body, const WebReply& reply);

@@ -290,7 +290,8 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   CHECK(error("/api/robots/3/order", R"({"goal": [[0, 0]]})") == "goal: is unknown, expected goals");
   CHECK(error("/api/robots/x/order", R"({"goals": [[0, 0]]})") == "there is no robot x");
   CHECK(error("/api/robots/-1/order", R"({"goals": [[0, 0]]})") == "there is no robot -1");
-  CHECK(error("/api/robots/3/dance", "{}") == "robots have no dance");
+  CHECK(error("/api/robots/3/dance", "{}") == "there is no /api/robots/3/dance");
+  CHECK(error("/api/zones/x", "{}") == "there is no zone x");
   CHECK(error("/api/robots/3/fault", R"({"kind": "melt"})").starts_with("kind: expected one of: push, slip"));
   CHECK(error("/api/robots/3/fault", R"({"kind": "push"})") == "vx_mps: is missing");
   CHECK(error("/api/robots/3/fault", R"({"kind": "push", "vx_mps": 10.1, "vy_mps": 0})") ==
