@@ -92,8 +92,11 @@ void AgentEventLogger::report_speed_limit(const ClockSpeedLimit& limit, Time now
 }
 
 void AgentEventLogger::on_robot_report(const RobotReport& robot_report) {
-  if (robot_report.valid_at < latest_report_) return;  // overtaken by a later report
+  // Times of different incarnations of a robot are not compared.
+  const bool is_same_incarnation = robot_report.robot_incarnation == robot_incarnation_;
+  if (is_same_incarnation && robot_report.valid_at < latest_report_) return;  // overtaken by a later report
   latest_report_ = robot_report.valid_at;
+  robot_incarnation_ = robot_report.robot_incarnation;
   report_restart(robot_report.activated);
   if (robot_report.is_off_reference && robot_report.executing.number > own_stop_) {
     own_stop_ = robot_report.executing.number;

@@ -72,6 +72,7 @@ class AgentEventLogger {
   std::optional<Time> escape_reported_at_, recovery_reported_at_;
   // State from the robot's reports.
   Time latest_report_{};
+  Incarnation robot_incarnation_ = 0;
   bool was_off_reference_ = false, was_lifted_ = false;
   VersionNumber own_stop_ = 0;
   std::uint64_t activated_ = 0;

@@ -15,8 +15,10 @@ constexpr Duration kMaxFixAge{300'000'000};
 /// A robot stops if the coordinator has not compared any robots with their versions for longer than this.
 constexpr Duration kMaxWatchAge{600'000'000};
 
-/// Whether a time is recent. A time far in the future means that a clock has been set.
-bool is_recent(Time t, Time now, Duration max_age) { return std::chrono::abs(now - t) <= max_age; }
+/// Whether a time is recent. A time ahead by more than `max_lead` means that a clock has been set.
+bool is_recent(Time t, Time now, Duration max_age, Duration max_lead) {
+  return t <= now + max_lead && now - t <= max_age;
+}
 
 }  // namespace
 
@@ -61,18 +63,25 @@ void Observations::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now)
   watched_until_ = heartbeat.watched_until;
 }
 
-WaitReason Observations::wait_reason(Time now) const {
-  if (!is_recent(last_fix_, now, kMaxFixAge)) return WaitReason::kNotSeen;
-  if (laser_ && !is_recent(laser_->sight().captured_at(), now, kMaxFixAge)) return WaitReason::kNoScan;
-  if (!laser_ && !is_recent(obstacles_.complete_at(), now, kMaxFixAge)) return WaitReason::kNoObstacleList;
-  if (!is_recent(watched_until_, now, kMaxWatchAge)) return WaitReason::kNotWatched;
-  return WaitReason::kNone;
+bool Observations::is_seen(Time now) const {
+  return is_recent(last_fix_, now, kMaxFixAge, max_clock_difference_);
 }
 
-bool Observations::is_coordinator_without_vision(Time now) const {
-  const bool is_watched = is_recent(watched_until_, now, kMaxWatchAge);
-  return is_recent(last_fix_, now, kMaxFixAge) && !is_watched;
+bool Observations::is_watched(Time now) const {
+  return is_recent(watched_until_, now, kMaxWatchAge, max_clock_difference_);
 }
+
+WaitReason Observations::wait_reason(Time now) const {
+  if (!is_seen(now)) return WaitReason::kNotSeen;
+  if (laser_ && !is_recent(laser_->sight().captured_at(), now, kMaxFixAge, max_clock_difference_))
+    return WaitReason::kNoScan;
+  if (!laser_ &&
+      !is_recent(obstacles_.complete_at(), now, kMaxFixAge, max_vision_lead(max_clock_difference_)))
+    return WaitReason::kNoObstacleList;
+  return is_watched(now) ? WaitReason::kNone : WaitReason::kNotWatched;
+}
+
+bool Observations::is_coordinator_without_vision(Time now) const { return is_seen(now) && !is_watched(now); }
 
 bool Observations::may_end_inflation(const Version& base, Time start) const {
   const bool is_at_rest = start >= base.trajectory.end();

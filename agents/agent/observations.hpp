@@ -58,6 +58,9 @@ class Observations {
   void count_drops(DropCounters& drops) const;
 
  private:
+  bool is_seen(Time now) const;
+  bool is_watched(Time now) const;
+
   Duration max_clock_difference_;  // of two clocks that both stay within the clock bound
   double page_horizon_m_;
   OwnReports own_;

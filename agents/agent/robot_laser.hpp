@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,10 +22,11 @@ class RobotLaser {
   RobotLaser(const FloorSpec& floor, const FloorRules& rules);
 
   /// Processes a scan. Drops and counts it if its time is in the future. `now` is an upper bound of the time
-  /// by the robot's clock.
+  /// by the robot's clock. If the last scan is in the future, the clock has been set back since: everything
+  /// that it and earlier scans showed is forgotten.
   void on_scan(const LaserScan& scan, Neighbours& neighbours, Time now);
 
-  const LaserSight& sight() const { return sight_; }
+  const LaserSight& sight() const { return *sight_; }
   /// The other robots at the time of the last scan.
   std::span<const Circle> robots() const { return robots_; }
   /// The floor that the laser did not see in its last scan.
@@ -38,11 +40,15 @@ class RobotLaser {
   std::uint64_t invalid() const { return invalid_; }
 
  private:
+  void forget();
+
   const FloorRules& rules_;
+  LaserSpec laser_;
+  LaserSightSettings settings_;
   Duration max_clock_difference_;
   double max_person_speed_mps_;
   Duration scan_period_;
-  LaserSight sight_;
+  std::optional<LaserSight> sight_;  // always set
   std::vector<Circle> robots_;
   std::uint64_t invalid_ = 0;
 };

@@ -154,6 +154,10 @@ TEST_CASE("each own stop, restart and lifting of the robot is reported once") {
   robot_report.is_lifted = true;
   f.changes.on_robot_report(robot_report);
   CHECK(f.events.all().size() == before);
+  robot_report.valid_at -= 10s;  // the robot's clock was set back, which raises its incarnation
+  ++robot_report.robot_incarnation;
+  f.changes.on_robot_report(robot_report);
+  CHECK(f.events.count("is off the floor") == 2);
 }
 
 TEST_CASE("denials are counted by reason and reported at most once per second, at debug level") {

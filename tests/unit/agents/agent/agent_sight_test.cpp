@@ -39,6 +39,7 @@ struct BeforeWall {
   Scenario scenario = with_laser();
   Agent agent{scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario)};
   Vec2 towards;
+  std::vector<float> ranges_m;
 
   BeforeWall(double wall_m, double bearing_rad, double speed_mps = 0)
       : towards(std::cos(bearing_rad), std::sin(bearing_rad)) {
@@ -67,14 +68,18 @@ struct BeforeWall {
     world.self = PoseFix{at_s(0.6), {0, 0}, 0};
     agent.on_world_state(world, at_s(0.6));
     const LaserScanner scanner(scenario.laser->settings);
-    std::vector<float> ranges_m;
     for (int beam = 0; beam < scenario.laser->settings.beams; ++beam) {
       const double along = std::cos(scanner.beam_angle_rad(beam) - bearing_rad);
       const double range_m = along > 0.2 ? wall_m / along : INFINITY;
       ranges_m.push_back(static_cast<float>(range_m < 8 ? range_m : INFINITY));
     }
-    agent.on_scan({{0, 0}, 0, at_s(0.6), ranges_m}, at_s(0.6));
+    scan(0.6, 0.6);
   }
+  /// Receives a scan of the wall, taken at one time by the robot's clock and received at another.
+  void scan(double captured_at_s, double now_s) {
+    agent.on_scan({{0, 0}, 0, at_s(captured_at_s), ranges_m}, at_s(now_s));
+  }
+  bool may_drive() const { return agent.wait_reason(at_s(0.61)) == WaitReason::kNone; }
   Vec2 desired_mps2() {
     const auto plan = agent.plan(at_s(0.61), at_s(0.61 + kCycle_s), kUnlimited_mps, kNoLag);
     REQUIRE(plan);
@@ -90,6 +95,18 @@ TEST_CASE("if no speed is safe from hidden people, the robot creeps away from th
     REQUIRE(desired_mps2.norm() > 0);
     CHECK(desired_mps2.normalized().dot(-robot.towards) > 0.99);
   }
+}
+
+TEST_CASE("a scan from before the robot's clock was set back is not used, and the next scan replaces it") {
+  const double back_s = GENERATE(0.005, 0.2, 5.0, 3000.0);
+  CAPTURE(back_s);
+  BeforeWall robot(3, 0);
+  REQUIRE(robot.may_drive());
+  robot.scan(0.61 + back_s, 0.61 + back_s);
+  CHECK_FALSE(robot.may_drive());
+  robot.scan(0.605, 0.61);
+  CHECK(robot.may_drive());
+  CHECK(robot.desired_mps2().x() > 0);
 }
 
 TEST_CASE("a robot drives on for another cycle only if it can still stop before a hidden person reaches it") {
