@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <stdexcept>
 #include <utility>
 #include <zstd.h>
@@ -30,9 +31,10 @@ bool is_for_chunks(Kind kind) {
 bool is_mcap_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;
-  const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  std::ifstream file(path, std::ios::binary);
   std::array<std::uint8_t, kMcapMagic.size()> bytes{};
-  return file && std::fread(bytes.data(), 1, bytes.size(), file.get()) == bytes.size() && bytes == kMcapMagic;
+  file.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+  return file && bytes == kMcapMagic;
 }
 
 McapReader::McapReader(const std::string& path) {
