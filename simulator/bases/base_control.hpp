@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 
 #include "common/geometry/vec2.hpp"
 #include "common/time/time.hpp"
@@ -12,9 +13,13 @@ namespace sidestep {
 /// Properties of bases that follow velocity commands. The defaults match the league's simulators and robots.
 struct BaseSettings {
   Duration latency = std::chrono::milliseconds(100);  ///< delay from a command to the first motion
-  /// The base brakes after this time without a command.
+  /// The base follows its last command for this time, and comes to rest if no other command takes effect.
   Duration silence_timeout = std::chrono::milliseconds(100);
+  /// Time in which the base then coasts to rest, at an even deceleration. 0: it brakes.
+  Duration coast{0};
   double braking_mps2 = 5.9;
+  double drag_per_s = 0;  ///< deceleration by drag, as a multiple of the velocity
+  double max_turn_radps = 20;
 };
 
 /// The velocity command of a base.
@@ -27,7 +32,7 @@ struct BaseVelocity {
 BodySettings body_settings(const BaseSettings& settings);
 
 /// The velocity control of a simulated base. It follows the latest command whose latency has passed, within
-/// the base's acceleration limits, and brakes if no commands arrive.
+/// the base's acceleration limits, and comes to rest if no commands arrive.
 class BaseControl {
  public:
   static constexpr double kMaxSpeed_mps = 3.7;
@@ -44,10 +49,14 @@ class BaseControl {
     Time effective_at{};
     BaseVelocity velocity;
   };
+  /// The velocity to reach, in the world frame.
+  BaseVelocity target(const Body& body, Time now);
+
   BaseSettings settings_;
   std::deque<Received> waiting_;
   BaseVelocity current_;
-  Time braking_begins_at_{};  ///< time at which the base brakes unless another command takes effect
+  Time silent_from_{};  ///< time from which the base comes to rest unless another command takes effect
+  std::optional<BaseVelocity> coasting_from_;  ///< velocity at silent_from_, in the world frame
 };
 
 }  // namespace sidestep
