@@ -14,11 +14,17 @@ constexpr double kMaxGhostRadius_m = 0.2;
 // Slightly below pi, so that no heading wraps.
 constexpr double kMaxGhostHeading_rad = 3.14159265358979;
 
+/// The direction of a position from the field's centre; zero at the centre.
+Vec2 direction_of(const Vec2& position_m) {
+  constexpr double kAtCentre_m = 1e-6;
+  return position_m.norm() > kAtCentre_m ? Vec2(position_m.normalized()) : Vec2(0, 0);
+}
+
 double confidence(Rng& rng) { return rng.uniform(0.8, 1.0); }
 
 }  // namespace
 
-Cameras::Cameras(const Scenario& scenario, Time begin, std::uint64_t seed)
+Cameras::Cameras(const Scenario& scenario, Time begin, std::uint64_t seed, double outward_error_m)
     : spec_(scenario.vision), period_(from_seconds(1 / scenario.vision.rate_hz)), rng_(seed) {
   for (const RobotSpec& robot : scenario.robots) ids_.push_back(robot.id);
   const Vec2 corner(-scenario.field.length_m / 2, -scenario.field.width_m / 2);
@@ -28,6 +34,7 @@ Cameras::Cameras(const Scenario& scenario, Time begin, std::uint64_t seed)
   for (int camera = 0; camera < count; ++camera) {
     const Vec2 low = corner + share.cwiseProduct(Vec2(camera % spec_.columns, camera / spec_.columns));
     views_.push_back({low - overlap, low + share + overlap});
+    errors_m_.push_back(outward_error_m * direction_of(low + share / 2));
     due_.push_back(begin + period_ * (camera + 1) / count);
   }
 }
@@ -65,6 +72,17 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
     frame.ball_count(1);
   }
   detect_opponents(view, objects.opponents, frame);
+  if (!errors_m_[camera].isZero(0)) displace(errors_m_[camera], frame);
+}
+
+void Cameras::displace(const Vec2& error_m, msg::DetectionFrame& frame) {
+  const auto shift = [&](auto& seen) {
+    seen.x_m(seen.x_m() + error_m.x());
+    seen.y_m(seen.y_m() + error_m.y());
+  };
+  for (msg::RobotDetection& robot : frame.robots()) shift(robot);
+  for (std::size_t i = 0; i < frame.ball_count(); ++i) shift(frame.balls()[i]);
+  for (std::size_t i = 0; i < frame.obstacle_count(); ++i) shift(frame.obstacles()[i]);
 }
 
 void Cameras::detect_robot(std::size_t robot, const Body& body, const VisionFault& error,

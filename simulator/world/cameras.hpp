@@ -34,7 +34,9 @@ struct VisibleObjects {
 /// opponents with the noise and dropouts of the scenario's VisionSpec.
 class Cameras {
  public:
-  Cameras(const Scenario& scenario, Time begin, std::uint64_t seed);
+  /// Each camera sees everything displaced by `outward_error_m`, away from the field's centre, so that two
+  /// cameras disagree where both see. A camera above the centre has no error.
+  Cameras(const Scenario& scenario, Time begin, std::uint64_t seed, double outward_error_m = 0);
 
   /// The time at which the next frame is due.
   Time next_capture() const { return due_[next_]; }
@@ -52,10 +54,12 @@ class Cameras {
                         msg::DetectionFrame& frame);
   void add_ghost(const CameraView& view, msg::DetectionFrame& frame);
   void select_next_camera();
+  static void displace(const Vec2& error_m, msg::DetectionFrame& frame);
 
   VisionSpec spec_;
   std::vector<RobotId> ids_;
   std::vector<CameraView> views_;
+  std::vector<Vec2> errors_m_;  ///< constant error of each camera
   std::vector<Time> due_;
   std::size_t next_ = 0;
   Duration period_;

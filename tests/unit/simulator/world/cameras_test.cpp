@@ -165,6 +165,44 @@ TEST_CASE("vision faults change the detections of the affected robots") {
   CHECK((place_of(1) - Vec2(0.5, 0.25)).norm() < 1e-12);
 }
 
+TEST_CASE("cameras with an outward error disagree where two of them see") {
+  const auto [columns, rows, disagreement] = GENERATE(
+      table<int, int, double>({{1, 1, 0.0}, {2, 1, 2.0}, {2, 2, 4.5 / std::hypot(2.25, 1.5)}, {3, 1, 1.0}}));
+  CAPTURE(columns, rows);
+  constexpr double kError_m = 0.02;
+  Scenario scenario = scene();
+  scenario.vision.columns = columns;
+  scenario.vision.rows = rows;
+  scenario.vision.position_noise_m = 0;
+  scenario.vision.overlap_m = 100;  // every camera sees everything
+  Cameras cameras(scenario, kBegin, 1, kError_m);
+  const auto bodies = bodies_of(scenario);
+  const Vec2 ball(-1, -1);
+  const std::vector<Circle> opponents{{{1, 1}, 0.2}};
+  std::vector<Vec2> errors_m(static_cast<std::size_t>(columns * rows));
+  msg::DetectionFrame frame;
+  for (std::size_t i = 0; i < errors_m.size(); ++i) {
+    cameras.capture(cameras.next_capture(), {bodies, &ball, opponents}, frame);
+    const auto error = [&](const auto& seen, const Vec2& real_m) {
+      return Vec2(Vec2(seen.x_m(), seen.y_m()) - real_m);
+    };
+    REQUIRE(frame.robots().size() == bodies.size());
+    Vec2& error_m = errors_m.at(frame.camera());
+    error_m = error(frame.robots()[0], bodies[0].position_m());
+    for (std::size_t k = 1; k < bodies.size(); ++k)
+      CHECK((error(frame.robots()[k], bodies[k].position_m()) - error_m).norm() < 1e-12);
+    CHECK((error(frame.balls()[0], ball) - error_m).norm() < 1e-12);
+    CHECK((error(frame.obstacles()[0], opponents[0].centre_m) - error_m).norm() < 1e-12);
+    // The error points away from the centre, as the centre of the camera's view does.
+    const CameraView& view = cameras.views()[frame.camera()];
+    const Vec2 centre_m = (view.low_m + view.high_m) / 2;
+    const bool is_central = centre_m.norm() < 1e-9;
+    CHECK(error_m.norm() == Approx(is_central ? 0 : kError_m).margin(1e-12));
+    CHECK(error_m.dot(centre_m) == Approx(error_m.norm() * centre_m.norm()).margin(1e-12));
+  }
+  if (errors_m.size() > 1) CHECK((errors_m[1] - errors_m[0]).norm() == Approx(disagreement * kError_m));
+}
+
 TEST_CASE("a delayed camera drops overdue frames") {
   const Scenario scenario = scene();
   Cameras cameras(scenario, kBegin, 1);
