@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/league/multicast.hpp"
 
+#include <algorithm>
 #include <poll.h>
 #include <sys/socket.h>
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
+#include "tests/second_sender.hpp"
 #include "tests/test_endpoint.hpp"
 
 namespace sidestep::league::multicast_test {
@@ -107,6 +109,37 @@ TEST_CASE("a receiver gets neither another group's datagrams nor unicast datagra
   CHECK(received(receiver, 1) == std::vector<Bytes>{right});
   CHECK_FALSE(is_readable(receiver));
   CHECK(received(of_other, 1) == std::vector<Bytes>{wrong});
+}
+
+TEST_CASE("a receiver tells a second sender in its group by address and port") {
+  const TestEndpoint group;
+  MulticastReceiver receiver(group.endpoint(), kLeagueInterface);
+  MulticastSender first(group.endpoint(), kLeagueInterface);
+  const std::uint16_t port = group.unicast(1).port;
+  SecondSender second(group.endpoint(), {0x7f000002, port}), third(group.endpoint(), {0x7f000001, port});
+  VisionPacket packet;
+  packet.detection.emplace();
+  std::vector<std::pair<Endpoint, std::uint32_t>> all;  // sender and frame number
+  for (std::uint32_t number = 1; number <= 3; ++number) {
+    packet.detection->frame_number = number;
+    if (number == 1) REQUIRE(first.send(encode(packet)));
+    if (number == 2) REQUIRE(second.send(packet));
+    if (number == 3) REQUIRE(third.send(packet));
+  }
+  pollfd readable{receiver.descriptor(), POLLIN, 0};
+  while (all.size() < 3 && poll(&readable, 1, 10'000) > 0) {
+    receiver.receive([&](std::span<const std::byte> bytes, const Endpoint& from) {
+      const auto decoded = decode_vision(bytes);
+      REQUIRE(decoded.packet);
+      all.emplace_back(from, decoded.packet->detection->frame_number);
+    });
+  }
+  REQUIRE(all.size() == 3);
+  std::ranges::sort(all, {}, &std::pair<Endpoint, std::uint32_t>::second);
+  CHECK(all[0].first.address == 0x7f000001);
+  CHECK(all[0].first.port != port);
+  CHECK(all[1] == std::pair(Endpoint{0x7f000002, port}, 2U));
+  CHECK(all[2] == std::pair(Endpoint{0x7f000001, port}, 3U));
 }
 
 TEST_CASE("an event loop delivers datagrams in its thread and sleeps in between") {
