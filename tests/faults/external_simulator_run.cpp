@@ -21,7 +21,7 @@ ExternalSimulatorRun::ExternalSimulatorRun(const std::string& scenario,
   start_simulator();
 }
 
-void ExternalSimulatorRun::start_simulator() {
+void ExternalSimulatorRun::start_simulator(const std::vector<std::string>& options) {
   std::vector<std::string> arguments{
       "--scenario",     run_->scenario_file(), "--league", "--ssl-vision",  endpoints_.text(0),
       "--control",      to_text(control()),    "--blue",   to_text(blue()), "--yellow",
@@ -31,7 +31,7 @@ void ExternalSimulatorRun::start_simulator() {
                        ? run_->dds_arguments()
                        : std::vector<std::string>{"--domain", std::to_string(endpoints_.domain().number())};
   arguments.insert(arguments.end(), dds.begin(), dds.end());
-  arguments.insert(arguments.end(), simulator_options_.begin(), simulator_options_.end());
+  arguments.insert(arguments.end(), options.begin(), options.end());
   simulator_ = run_->start(fmt::format("foreign simulator {}", ++starts_), "sidestep-simulator", arguments);
 }
 

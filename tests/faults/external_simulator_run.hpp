@@ -24,7 +24,10 @@ class ExternalSimulatorRun {
                                 const std::vector<std::string>& run_options = {}, bool has_truth = true);
 
   LaunchedRun& run() { return *run_; }
-  void start_simulator();
+  /// `options` replace those of the constructor: the simulator may return with other traits, or with its
+  /// robots at other places.
+  void start_simulator(const std::vector<std::string>& options);
+  void start_simulator() { start_simulator(simulator_options_); }
   void kill_simulator();
   /// The ports of the simulator.
   league::Endpoint control() const { return endpoints_.unicast(1); }
