@@ -29,6 +29,8 @@ class BaseWorld {
 
   /// The scenario with the opponents among its robots.
   const Scenario& floor() const { return floor_; }
+  /// Number of the scenario's robots; they come before the opponents.
+  std::size_t scenario_robot_count() const { return scenario_robot_count_; }
   std::optional<std::size_t> find(Team team, std::uint32_t number) const;
   void command(std::size_t robot, const BaseVelocity& velocity, Time now) {
     controls_[robot].command(velocity, now);
