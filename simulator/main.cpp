@@ -52,13 +52,15 @@ struct Robots {
 /// Robots that clients drive through the league's protocol.
 struct LeagueRobots {
   LeagueRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
-      : bases(bus, scenario, options.bases.team_size, settings_of(options.bases), options.bases.speed,
-              incarnation, options.seed),
-        server(bases, ports_of(options.bases), options.bases.accepts_global, options.bases.loss),
-        vision(bus, bases.events(), bases.world_now().floor(), bases.cameras().views(),
-               options.ssl_vision.value_or(league::kSimulatedVisionEndpoint), options.league_interface,
-               traits_of(options.bases)) {
-    bases.set_detection_listener([this](const msg::DetectionFrame& frame) { vision.send(frame); });
+      : bases(bus, scenario, settings_of(options.bases), incarnation, options.seed),
+        server(bases, ports_of(options.bases), options.bases.server),
+        vision(bus, bases.events(), reported_floor(bases.world_now().floor(), options.bases),
+               bases.cameras().views(), options.ssl_vision.value_or(league::kSimulatedVisionEndpoint),
+               options.league_interface, traits_of(options.bases)) {
+    bases.set_detection_listener([this](const msg::DetectionFrame& frame, Time captured) {
+      const Time begin = bases.simulated_begin();
+      vision.send(frame, {captured - begin, bases.simulated_now() - begin});
+    });
     bases.add_drop_source([this](DropCounters& drops) { vision.count_drops(drops); });
     server.start([&bus](int descriptor, std::function<void()> readable) {
       bus.watch(descriptor, std::move(readable));
@@ -72,7 +74,7 @@ struct LeagueRobots {
 /// Robots that appear as bases with ROS 2's topics.
 struct VelocityRobots {
   VelocityRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
-      : bases(bus, scenario, 0, settings_of(options.bases), options.bases.speed, incarnation, options.seed),
+      : bases(bus, scenario, settings_of(options.bases), incarnation, options.seed),
         velocity_bus(bases_bus(bus, options.bases.velocity)),
         server(*velocity_bus, bases, options.bases.velocity.topic_prefix, options.bases.odometry_drift) {}
   VelocityRobotSimNode bases;

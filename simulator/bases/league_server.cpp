@@ -3,14 +3,15 @@
 
 namespace sidestep {
 
-LeagueServer::LeagueServer(VelocityRobotSimNode& node, const LeagueServerPorts& ports, bool accepts_global,
-                           double loss)
+LeagueServer::LeagueServer(VelocityRobotSimNode& node, const LeagueServerPorts& ports,
+                           const LeagueServerSettings& settings)
     : node_(node),
-      accepts_global_(accepts_global),
+      settings_(settings),
       control_(ports.control),
       blue_(ports.blue),
       yellow_(ports.yellow),
-      loss_(loss) {
+      blue_answers_(settings.packets_per_answer),
+      yellow_answers_(settings.packets_per_answer) {
   node.add_drop_source([this](DropCounters& drops) {
     drops.count(DropReason::kMalformedLeaguePacket, std::nullopt, malformed_);
     drops.count(DropReason::kInjectedLoss, std::nullopt, lost_);
@@ -21,8 +22,8 @@ LeagueServer::LeagueServer(VelocityRobotSimNode& node, const LeagueServerPorts& 
 
 void LeagueServer::start(const std::function<void(int, std::function<void()>)>& watch) {
   watch(control_.descriptor(), [this] { receive_control(); });
-  watch(blue_.descriptor(), [this] { receive_team(Team::kBlue, blue_); });
-  watch(yellow_.descriptor(), [this] { receive_team(Team::kYellow, yellow_); });
+  watch(blue_.descriptor(), [this] { receive_team(Team::kBlue, blue_, blue_answers_); });
+  watch(yellow_.descriptor(), [this] { receive_team(Team::kYellow, yellow_, yellow_answers_); });
 }
 
 template <typename Packet>
@@ -36,18 +37,19 @@ bool LeagueServer::accept(const league::Decoded<Packet>& decoded, const league::
   return false;
 }
 
-void LeagueServer::receive_team(Team team, league::UnicastSocket& socket) {
+void LeagueServer::receive_team(Team team, league::UnicastSocket& socket, AnswerBatch& answers) {
   BaseWorld& world = node_.world_now();
   socket.receive([&](std::span<const std::byte> datagram, const league::Endpoint& from) {
-    if (rng_.chance(loss_)) {
+    if (rng_.chance(settings_.loss)) {
       ++lost_;
       return;
     }
     const auto commands = league::decode_team_commands(datagram);
     if (!accept(commands, from)) return;
-    const auto response =
-        LeagueCommands(world, accepts_global_).on_team(team, *commands.packet, node_.simulated_now());
-    (void)socket.send(encode(response), from);  // failures are counted by the socket
+    const auto response = LeagueCommands(world, settings_.accepts_global)
+                              .on_team(team, *commands.packet, node_.simulated_now());
+    // Failures are counted by the socket.
+    if (const auto answer = answers.add(response)) (void)socket.send(encode(*answer), from);
   });
 }
 
@@ -57,7 +59,7 @@ void LeagueServer::receive_control() {
     const auto command = league::decode_simulator_command(datagram);
     if (!accept(command, from)) return;
     std::optional<double> speed;
-    const auto response = LeagueCommands(world, accepts_global_).on_control(*command.packet, speed);
+    const auto response = LeagueCommands(world, settings_.accepts_global).on_control(*command.packet, speed);
     if (speed) node_.set_speed(*speed);
     (void)control_.send(encode(response), from);  // failures are counted by the socket
   });

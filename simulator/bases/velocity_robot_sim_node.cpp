@@ -19,29 +19,35 @@ constexpr auto kSender = static_cast<std::uint32_t>(Sender::kSimulator);
 
 }  // namespace
 
-VelocityRobotSimNode::VelocityRobotSimNode(Bus& bus, const Scenario& scenario, std::uint32_t team_size,
-                                           const BaseSettings& settings, double speed,
-                                           Incarnation incarnation, std::uint64_t seed)
+VelocityRobotSimNode::VelocityRobotSimNode(Bus& bus, const Scenario& scenario,
+                                           const BaseFloorSettings& settings, Incarnation incarnation,
+                                           std::uint64_t seed)
     : bus_(bus),
       delay_(scenario.vision.delay),
       incarnation_(incarnation),
-      clock_(bus.now(), speed),
-      world_(scenario, team_size, settings, bus.now()),
-      cameras_(world_.floor(), bus.now(), Rng(seed).bits()),
+      begin_(bus.now()),
+      clock_(begin_, settings.pace, Rng(seed + 1).bits()),
+      world_(scenario, settings.team_size, settings.bases, begin_),
+      cameras_(world_.floor(), begin_, Rng(seed).bits(), settings.camera_error_m),
       detections_(bus.advertise(topics::kDetections)),
       truth_(bus.advertise(topics::kTruth)),
-      truth_due_(bus.now()),
+      truth_due_(begin_),
+      advanced_at_(begin_),
       counters_(bus, kSender, incarnation, [this](DropCounters& drops) {
         for (const auto& source : drop_sources_) source(drops);
       }) {
+  place_robots(world_, settings.starts, Rng(seed + 2).bits());
   bus.at(bus.now(), [this] { wake(); });
 }
 
 BaseWorld& VelocityRobotSimNode::world_now() {
   const Time now = simulated_now();
-  if (now - world_.time() > kMaxCatchUp) {
-    clock_ = SimulatedClock(bus_.now(), 1);
+  const bool was_paused = bus_.now() - advanced_at_ > kMaxCatchUp;
+  advanced_at_ = bus_.now();
+  if (was_paused) {
+    clock_.resume(world_.time(), bus_.now());
     events_.report(LogLevel::kWarning, {}, "the simulation was paused");
+    return world_;
   }
   while (cameras_.next_capture() <= now) {
     world_.advance(cameras_.next_capture());
@@ -64,6 +70,7 @@ void VelocityRobotSimNode::capture() {
   const Time captured_at = world_.time();
   cameras_.capture(captured_at, {world_.bodies(), ball_m}, frame.message);
   frame.message.captured_at_ns(to_ns(clock_.clock(captured_at)));
+  frame.captured_at = captured_at;
   frame.publish_at = captured_at + delay_;
 }
 
@@ -71,11 +78,12 @@ void VelocityRobotSimNode::publish_frames() {
   const Time now = simulated_now();
   std::size_t published = 0;
   for (; published < frames_.size() && frames_[published].publish_at <= now; ++published) {
-    msg::DetectionFrame& message = frames_[published].message;
+    PendingFrame& frame = frames_[published];
+    msg::DetectionFrame& message = frame.message;
     message.header().sender(kSender);
     message.header().incarnation(incarnation_);
     detections_.publish(message, bus_.now());
-    if (detection_listener_) detection_listener_(message);
+    if (detection_listener_) detection_listener_(message, frame.captured_at);
   }
   frames_.erase(frames_.begin(), frames_.begin() + static_cast<std::ptrdiff_t>(published));
 }

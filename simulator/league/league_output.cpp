@@ -13,19 +13,26 @@ LeagueOutput::LeagueOutput(Bus& bus, const EventReporter& events, const Scenario
       events_(events),
       frames_(scenario, views),
       traits_(traits),
+      begin_(bus.now()),
       sender_(league::parse_multicast_endpoint(endpoint), interface) {
-  if (traits.counts_from_start) epoch_ = bus.now().time_since_epoch();
   if (traits.geometry_period > Duration::zero()) bus_.at(bus_.now(), [this] { send_geometry(); });
 }
 
 void LeagueOutput::send(const msg::DetectionFrame& frame) {
+  send(frame, {time_from_ns(frame.captured_at_ns()) - begin_, bus_.now() - begin_});
+}
+
+void LeagueOutput::send(const msg::DetectionFrame& frame, const FrameStamps& simulated) {
   if (rng_.chance(traits_.loss)) {
     ++lost_;
     return;
   }
-  league::VisionPacket packet = frames_.detection(frame, bus_.now());
-  packet.detection->captured -= epoch_;
-  packet.detection->sent -= epoch_;
+  const Time now = bus_.now();
+  league::VisionPacket packet = frames_.detection(frame, now);
+  const FrameStamps real{Duration{frame.captured_at_ns()}, now.time_since_epoch()};
+  const FrameStamps times = packet_times(traits_.times, real, simulated);
+  packet.detection->captured = times.captured;
+  packet.detection->sent = times.sent;
   if (traits_.geometry_period == Duration::zero()) packet.geometry = frames_.geometry().geometry;
   send(packet);
 }

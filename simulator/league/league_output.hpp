@@ -10,14 +10,15 @@
 #include "common/protocol/drop_counters.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/league/league_frames.hpp"
+#include "simulator/league/packet_times.hpp"
 
 namespace sidestep {
 
 /// Differences between the league's simulators in how they send packets.
 struct LeagueTraits {
   Duration geometry_period = std::chrono::seconds(3);  ///< 0: with every frame
-  bool counts_from_start = false;  ///< times count from the simulation's start instead of 1970
-  double loss = 0;                 ///< probability that a packet of detections is not sent
+  PacketTimeSettings times{};
+  double loss = 0;  ///< probability that a packet of detections is not sent
 };
 
 /// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry once per
@@ -31,7 +32,10 @@ class LeagueOutput {
   LeagueOutput(const LeagueOutput&) = delete;
   LeagueOutput& operator=(const LeagueOutput&) = delete;
 
+  /// Sends a frame of a simulation whose time is real time.
   void send(const msg::DetectionFrame& frame);
+  /// `simulated` counts from the simulation's start.
+  void send(const msg::DetectionFrame& frame, const FrameStamps& simulated);
   void count_drops(DropCounters& drops) const;
 
  private:
@@ -42,7 +46,7 @@ class LeagueOutput {
   const EventReporter& events_;
   LeagueFrames frames_;
   LeagueTraits traits_;
-  Duration epoch_{0};  ///< origin of the sender's time
+  Time begin_;
   league::MulticastSender sender_;
   Rng rng_{1};
   std::uint64_t lost_ = 0, next_report_ = 1;

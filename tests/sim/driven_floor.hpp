@@ -35,7 +35,7 @@ class DrivenFloor {
               std::uint64_t seed, std::function<void(msg::Command&)> defect = {})
       : floor_bus_(network),
         robots_bus_(network, std::move(defect)),
-        bases_(floor_bus_, scenario, 0, bases, 1, 1, seed),
+        bases_(floor_bus_, scenario, {.bases = bases}, 1, seed),
         driver_(bases_, scenario),
         robots_(robots_bus_, scenario, roster_of(scenario), 1, drive_settings(scenario, latency), driver_,
                 memory_.path()) {}

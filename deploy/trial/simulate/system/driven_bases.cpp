@@ -23,7 +23,7 @@ BaseSettings bases_with_latency(Duration latency) {
 
 DrivenBases::DrivenBases(Bus& bus, const Scenario& scenario, Duration latency, Incarnation incarnation,
                          std::uint64_t seed)
-    : bases_(bus, scenario, 0, bases_with_latency(latency), 1, incarnation, seed),
+    : bases_(bus, scenario, {.bases = bases_with_latency(latency)}, incarnation, seed),
       driver_(bases_, scenario),
       robots_(bus, scenario, roster_of(scenario), incarnation, drive_settings(scenario, latency), driver_,
               memory_.path()) {}

@@ -30,7 +30,7 @@ TEST_CASE("cameras see the bases after their delay, and ground truth shows the a
   observer.subscribe<msg::DetectionFrame>(
       topics::kDetections, [&](const auto& frame) { frames.emplace_back(network.now(), frame); });
   observer.subscribe<msg::GroundTruth>(topics::kTruth, [&](const auto& truth) { truths.push_back(truth); });
-  VelocityRobotSimNode node(bus, one_robot(), 0, {}, 1, 7, 1);
+  VelocityRobotSimNode node(bus, one_robot(), {}, 7, 1);
   for (int i = 0; i < 100; ++i) {
     node.world_now().command(0, {{1, 0}, 0}, node.simulated_now());
     network.run_until(network.now() + 10ms);
@@ -53,7 +53,7 @@ TEST_CASE("robots in a slow simulation move slowly, but frames are timestamped b
   observer.subscribe<msg::DetectionFrame>(topics::kDetections, [&](const auto& frame) {
     delays.push_back(network.now() - time_from_ns(frame.captured_at_ns()));
   });
-  VelocityRobotSimNode node(bus, one_robot(), 0, {}, 0.5, 7, 1);
+  VelocityRobotSimNode node(bus, one_robot(), {.pace = {.speeds = {0.5}}}, 7, 1);
   for (int i = 0; i < 200; ++i) {
     node.world_now().command(0, {{1, 0}, 0}, node.simulated_now());
     network.run_until(network.now() + 10ms);
@@ -65,6 +65,49 @@ TEST_CASE("robots in a slow simulation move slowly, but frames are timestamped b
   node.set_speed(1);
   network.run_until(network.now() + 1s);
   CHECK(node.world_now().time() - kBegin == 2s);
+}
+
+TEST_CASE("frames tell their simulated capture time, which advances in steps at the simulation's speed") {
+  SimNetwork network(1, kBegin, {});
+  SimBus bus(network);
+  Scenario scenario = one_robot();
+  scenario.vision.delay = 0ms;
+  const Duration step = from_seconds(1.0 / 60);
+  VelocityRobotSimNode node(bus, scenario, {.pace = {.speeds = {0.98}, .step = step}}, 7, 1);
+  std::vector<std::pair<Time, Time>> frames;  // real time of arrival, simulated time of capture
+  node.set_detection_listener([&](const msg::DetectionFrame& frame, Time simulated) {
+    frames.emplace_back(network.now(), simulated);
+    CHECK(std::abs(to_seconds(time_from_ns(frame.captured_at_ns()) - kBegin) * 0.98 -
+                   to_seconds(simulated - kBegin)) < 1e-6);
+  });
+  network.run_until(kBegin + 10s);
+  // 60 frames per simulated second, each captured at a step.
+  CHECK(frames.size() == Approx(588).margin(1));
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    CHECK(std::abs(to_seconds(frames[i].second - frames[i - 1].second - step)) < 0.0011);
+    const double late_s = to_seconds(frames[i].first - kBegin) - to_seconds(frames[i].second - kBegin) / 0.98;
+    CHECK(late_s > -1e-6);
+    CHECK(late_s < 0.021);
+  }
+}
+
+TEST_CASE("a simulation that was paused for long continues where it was, at its speed") {
+  SimNetwork network(1, kBegin, {});
+  SimBus bus(network);
+  VelocityRobotSimNode node(bus, one_robot(), {.pace = {.speeds = {0.5}}}, 7, 1);
+  network.run_until(kBegin + 2s);
+  const Time before = node.simulated_now();
+  bus.pause(kBegin + 7s, 0);
+  network.run_until(kBegin + 9s);
+  CHECK(to_seconds(node.simulated_now() - before) == Approx(1).margin(0.01));
+}
+
+TEST_CASE("robots can start elsewhere than the scenario says") {
+  SimNetwork network(1, kBegin, {});
+  SimBus bus(network);
+  VelocityRobotSimNode node(bus, one_robot(), {.team_size = 11, .starts = StartPlaces::kLine}, 7, 1);
+  CHECK(node.world_now().bodies().size() == 22);
+  CHECK(node.world_now().bodies()[0].position_m().x() == Approx(-0.15));
 }
 
 }  // namespace sidestep::velocity_robot_sim_node_test

@@ -19,7 +19,7 @@ TEST_CASE("a base obeys twists and reports its motion with drift, in a frame who
   scenario.robots.front().start_heading_rad = 2;
   SimNetwork network(1, kBegin, {});
   SimBus bus(network), client(network);
-  VelocityRobotSimNode node(bus, scenario, 0, {}, 1, 1, 1);
+  VelocityRobotSimNode node(bus, scenario, {}, 1, 1);
   const VelocityServer server(bus, node, "robot", 0.02);
   std::vector<ros::Odometry> reports;
   client.observe_channel<ros::Odometry>(ros::kOdometry, "rt/robot0/odom",
