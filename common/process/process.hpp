@@ -24,8 +24,11 @@ struct RunningNodes {
   /// set. Empty: never.
   std::function<bool()> uses_clock = {};
   /// Called when the process is asked to exit, and then every 10 ms until it returns true; only then does the
-  /// process exit. Empty: it exits immediately.
+  /// process exit, unless Ctrl-C repeats the request. Empty: it exits immediately.
   std::function<bool()> finish = {};
+  /// Says what a process that exits before it has finished gives up, e.g. "robot 3 still moves"; empty text:
+  /// nothing. Needed only with `finish`.
+  std::function<std::string()> unfinished = {};
 };
 
 /// The program-specific parts of a process; run_process() provides the rest.

@@ -2,9 +2,15 @@
 #include "common/process/process_run.hpp"
 
 #include <atomic>
+#include <cerrno>
+#include <csignal>
 #include <fmt/core.h>
 #include <optional>
 #include <stdexcept>
+#include <sys/eventfd.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
 
 #include "common/log/log.hpp"
 #include "common/messaging/clock_responder.hpp"
@@ -18,14 +24,45 @@
 namespace sidestep {
 namespace {
 
-/// Stops the current bus from a signal handler.
-struct StopRequest {
+/// Requests to stop, made from a signal handler. They stop the current bus, unless its nodes have to finish
+/// first; those learn of a request from a descriptor.
+class StopRequest {
+ public:
+  StopRequest() : event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    if (event_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+  }
+  ~StopRequest() { close(event_); }
+  StopRequest(const StopRequest&) = delete;
+  StopRequest& operator=(const StopRequest&) = delete;
+
   void make() {
     is_made = true;
+    if (!must_finish) return stop_bus();
+    const int saved_errno = errno;
+    const std::uint64_t one = 1;
+    (void)!write(event_, &one, sizeof one);
+    errno = saved_errno;
+  }
+  void give_up() {
+    is_given_up = true;
+    stop_bus();
+  }
+  /// Is readable while requests that acknowledge() has not read are waiting.
+  int descriptor() const { return event_; }
+  void acknowledge() const {
+    std::uint64_t count = 0;
+    (void)!read(event_, &count, sizeof count);
+  }
+
+  std::atomic<bool> is_made{false}, is_given_up{false}, must_finish{false};
+  std::atomic<DdsBus*> bus{nullptr};
+
+ private:
+  void stop_bus() {
     if (DdsBus* const current = bus) current->stop();
   }
-  std::atomic<bool> is_made{false};
-  std::atomic<DdsBus*> bus{nullptr};
+
+  int event_;
 };
 
 /// Registers the bus with a stop request for the lifetime of the object.
@@ -35,22 +72,34 @@ class StoppableBus {
     request_.bus = &bus;
     if (request_.is_made) bus.stop();
   }
-  ~StoppableBus() { release(); }
+  ~StoppableBus() {
+    request_.must_finish = false;
+    request_.bus = nullptr;
+  }
   StoppableBus(const StoppableBus&) = delete;
   StoppableBus& operator=(const StoppableBus&) = delete;
-
-  /// Detaches the bus, so that the request no longer stops it.
-  void release() { request_.bus = nullptr; }
 
  private:
   StopRequest& request_;
 };
 
-/// Stops the bus once the process has been asked to end and the nodes have finished.
-void stop_when_finished(DdsBus& bus, const StopRequest& request, const std::function<bool()>& finish) {
+/// Stops the bus once the nodes have finished.
+void stop_when_finished(DdsBus& bus, const std::function<bool()>& finish) {
   constexpr Duration kPeriod = std::chrono::milliseconds(10);
-  if (request.is_made && finish()) return bus.stop();
-  bus.at(bus.now() + kPeriod, [&] { stop_when_finished(bus, request, finish); });
+  if (finish()) return bus.stop();
+  bus.at(bus.now() + kPeriod, [&bus, &finish] { stop_when_finished(bus, finish); });
+}
+
+/// From now on the nodes finish before a request stops the bus. All arguments must outlive the bus's last
+/// callback.
+void finish_before_stop(DdsBus& bus, StopRequest& stop, const RunningNodes& running, bool& is_finishing) {
+  stop.must_finish = true;
+  bus.watch(stop.descriptor(), [&] {
+    stop.acknowledge();
+    if (std::exchange(is_finishing, true)) return;
+    log(LogLevel::kInfo, "asked to end: robots come to rest first");
+    stop_when_finished(bus, running.finish);
+  });
 }
 
 void log_step(Duration host_ahead) {
@@ -63,7 +112,7 @@ void log_step(Duration host_ahead) {
 bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSettings& dds,
                 Incarnation incarnation, StopRequest& stop) {
   DdsBus bus(dds);
-  StoppableBus stoppable(stop, bus);
+  const StoppableBus stoppable(stop, bus);
   const std::uint32_t process = program.process();
   const RulesExchange rules(bus, process, SharedRules(scenario), [](const RulesMismatch& mismatch) {
     log(LogLevel::kWarning, describe(mismatch));
@@ -92,15 +141,17 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
   const HostClockWatch watch(bus, program.clock_reference, max_clock_difference(scenario.clock_bound_s),
                              {DdsBus::host_clock_ahead, is_in_use, adopt, log_step});
   if (dds.faults) apply_network_faults(bus, process);
-  if (running.finish) {
-    stoppable.release();
-    stop_when_finished(bus, stop, running.finish);
-  }
+  bool is_finishing = false;
+  if (running.finish) finish_before_stop(bus, stop, running, is_finishing);
   log(LogLevel::kInfo,
       fmt::format("Fast DDS {}, domain {}, listening on {}", fast_dds_version(), dds.domain, bus.locators()));
   log(LogLevel::kInfo, budget_line(budget_of(scenario), scenario.margin_m));
   if (scenario.map && !scenario.map->notice().empty()) log(LogLevel::kInfo, scenario.map->notice());
   bus.run();
+  if (stop.is_given_up && running.unfinished) {
+    if (const std::string text = running.unfinished(); !text.empty())
+      log(LogLevel::kWarning, "gives up: " + text);
+  }
   if (yields_to) throw std::runtime_error(*yields_to);
   return adopts && !stop.is_made;
 }
@@ -108,8 +159,10 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
 }  // namespace
 
 void run_program(const Program& program, const Scenario& scenario, const DdsSettings& dds) {
+  // A process whose log is no longer read still brings its robots to rest.
+  std::signal(SIGPIPE, SIG_IGN);
   StopRequest stop;
-  const StopSignals stop_signals([&stop] { stop.make(); });
+  const StopSignals stop_signals([&stop] { stop.make(); }, [&stop] { stop.give_up(); });
   Incarnation incarnation = next_incarnation(0, DdsBus::clock());
   while (run_on_bus(program, scenario, dds, incarnation, stop)) {
     const double by_s = to_seconds(DdsBus::host_clock_ahead());

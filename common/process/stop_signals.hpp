@@ -6,12 +6,14 @@
 
 namespace sidestep {
 
-/// Calls `stop` on SIGINT and SIGTERM instead of ending the process, for the lifetime of the object. `stop`
-/// runs in the signal handler, so it has to be async-signal-safe, as DdsBus::stop() is. At most one object
-/// per process at a time.
+/// Calls `stop` on SIGINT and SIGTERM instead of ending the process, for the lifetime of the object. Both
+/// callbacks run in the signal handler, so they have to be async-signal-safe, as DdsBus::stop() is. At most
+/// one object per process at a time.
 class StopSignals {
  public:
-  explicit StopSignals(std::function<void()> stop);
+  /// `give_up`, if set, is called instead of `stop` on a SIGINT that follows another signal: the user does
+  /// not want to wait. SIGTERM never gives up, because supervisors repeat it.
+  explicit StopSignals(std::function<void()> stop, std::function<void()> give_up = {});
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;

@@ -198,6 +198,49 @@ TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit 
   CHECK(outcome.err.find("no keys") == std::string::npos);  // nobody else can reach the loopback interface
 }
 
+TEST_CASE(
+    "a process that is asked to end first finishes, whatever the signal, and a repeated SIGTERM changes "
+    "nothing") {
+  const int signal_number = GENERATE(SIGINT, SIGTERM);
+  Program program = test_program();
+  int asked = 0;
+  program.start = [&](DdsBus& bus, const Scenario&, Incarnation) {
+    bus.at(bus.now(), [=] { kill(getpid(), signal_number); });
+    RunningNodes running;
+    running.finish = [&asked] {
+      kill(getpid(), SIGTERM);
+      return ++asked == 5;
+    };
+    running.unfinished = [] { return "robot 3 still moves"; };
+    return running;
+  };
+  const Outcome outcome = run(program, good_arguments());
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK(asked == 5);
+  CHECK_THAT(outcome.err, ContainsSubstring("asked to end: robots come to rest first"));
+  CHECK(outcome.err.find("gives up") == std::string::npos);
+}
+
+TEST_CASE("a second Ctrl-C ends a process at once, and says what it has not finished") {
+  const int first = GENERATE(SIGINT, SIGTERM);
+  Program program = test_program();
+  program.start = [&](DdsBus& bus, const Scenario&, Incarnation) {
+    bus.at(bus.now(), [=] { kill(getpid(), first); });
+    RunningNodes running;
+    running.finish = [] {
+      kill(getpid(), SIGINT);
+      return false;
+    };
+    running.unfinished = [] { return "robot 3 still moves"; };
+    return running;
+  };
+  const Outcome outcome = run(program, good_arguments());
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.err, ContainsSubstring("gives up: robot 3 still moves"));
+}
+
 TEST_CASE("a later run of a process has a higher incarnation, unless other processes would refuse it") {
   const Time now = time_from_ns(1'000'000'000'000'000);
   const auto reading = static_cast<Incarnation>(to_ns(now)), minute = Incarnation{60'000'000'000};
