@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <stdexcept>
+#include <string>
 
 #include "agents/agent/agent_node.hpp"
 #include "common/config/planner_names.hpp"
 #include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/protocol/moving_text.hpp"
 
 int main(int argc, char** argv) {
   using namespace sidestep;
@@ -31,7 +34,9 @@ int main(int argc, char** argv) {
     auto node = std::make_shared<AgentNode>(bus, scenario, robot, incarnation,
                                             std::make_shared<PlanningScratch>(scenario));
     log_events_of(*node);
-    return {node, [&node = *node] { return node.uses_clock(); }};
+    return {node, [&node = *node] { return node.uses_clock(); },
+            [&node = *node] { return node.come_to_rest(); },
+            [&node = *node, robot] { return node.is_at_rest() ? "" : still_moving_text(std::array{robot}); }};
   };
   return run_process(argc, argv, program);
 }

@@ -6,6 +6,9 @@
 namespace sidestep {
 namespace {
 
+/// Time from the end of a version until its robot rests, at most a base's latency later.
+constexpr Duration kRestingTime{300'000'000};
+
 const RobotSpec& spec_of(const FloorSpec& floor, RobotId robot) { return *find_robot(floor, robot); }
 
 }  // namespace
@@ -82,6 +85,7 @@ std::optional<Time> Agent::start_to_propose(Time now, Time next_cycle) const {
 WaitReason Agent::wait_reason(Time now) const {
   if (const WaitReason reason = negotiation_.wait_reason(now); reason != WaitReason::kNone) return reason;
   if (negotiation_.is_absent()) return WaitReason::kNone;
+  if (is_stopping_) return WaitReason::kEnding;
   if (!assignment().is_known()) return WaitReason::kOrdersUnknown;
   if (assignment().is_held()) return WaitReason::kHeld;
   if (!assignment().goal() && !planner_.is_kept_out(observations_.own().estimate().position_m))
@@ -110,6 +114,12 @@ bool Agent::needs_rest_version(Time now) const {
 Proposal Agent::propose_rest_version(Time now, Time start) {
   const Trajectory rest = Trajectory::resting(start, *placement_m_);
   return negotiation_.propose({&rest, 1}, 0, now);
+}
+
+bool Agent::is_at_rest(Time now) const {
+  if (!negotiation_.is_fenced() || negotiation_.is_superseded() || negotiation_.is_absent()) return true;
+  if (negotiation_.has_upcoming_version(now)) return false;
+  return negotiation_.held().base_at(now).trajectory.end() + kRestingTime <= now;
 }
 
 Command Agent::command(Time now) {

@@ -55,6 +55,12 @@ class Agent {
   /// Closes the cycle that ends now: abandons this agent's proposals that have no verdict yet.
   void close_cycle(Time now) { negotiation_.close_cycle(now); }
 
+  /// Proposes no more motions, so the robot brakes along the version that it has.
+  void stop() { is_stopping_ = true; }
+  /// Whether the robot stays at rest if the agent ends: it has no version that still moves it, and none that
+  /// awaits its verdict. Holds if the robot does not obey this agent.
+  bool is_at_rest(Time now) const;
+
   // State of the negotiation; see Negotiation.
   Incarnation incarnation() const { return negotiation_.incarnation(); }
   Epoch epoch() const { return negotiation_.epoch(); }
@@ -134,7 +140,8 @@ class Agent {
   ProposalSearch search_;
   Rng rng_;
   std::optional<Version> forwarded_;  // granted version that has not started yet
-  std::optional<Vec2> placement_m_;   // place where the robot will be put down
+  bool is_stopping_ = false;
+  std::optional<Vec2> placement_m_;  // place where the robot will be put down
 };
 
 }  // namespace sidestep

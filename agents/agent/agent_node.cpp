@@ -9,6 +9,7 @@
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
+#include "common/motion/time_to_rest.hpp"
 #include "idl/disturbance.hpp"
 
 namespace sidestep {
@@ -46,6 +47,7 @@ AgentNode::AgentNode(Bus& bus, const FloorSpec& floor, RobotId robot, Incarnatio
       robot_(robot),
       cycle_(floor.cycle),
       max_speed_mps_(floor.limits.speed_mps),
+      max_stopping_time_(2 * time_to_rest(floor.limits)),
       agent_(floor, robot, incarnation, std::move(scratch)),
       clocks_(budget_of(floor), floor.margin_m),
       world_(robot),
@@ -201,6 +203,12 @@ void AgentNode::begin_cycle() {
 
 double AgentNode::speed_limit_mps() const {
   return std::min(max_speed_mps_, clocks_.max_speed_mps(bus_.now()));
+}
+
+bool AgentNode::come_to_rest() {
+  if (!stopping_since_) stopping_since_ = bus_.now();
+  agent_.stop();
+  return is_at_rest() || has_elapsed(max_stopping_time_, *stopping_since_);
 }
 
 void AgentNode::report_changes() {

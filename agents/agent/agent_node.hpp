@@ -37,6 +37,11 @@ class AgentNode {
   bool uses_clock() const {
     return agent_.is_superseded() || clocks_.robot_coordinator_offset(bus_.now()).has_value();
   }
+  /// Proposes no more motions, so the robot brakes along the version that it has. Returns whether the robot
+  /// rests, or has had twice the time that it needs.
+  [[nodiscard]] bool come_to_rest();
+  /// Whether the robot is known to stay at rest without this agent.
+  bool is_at_rest() const { return agent_.is_at_rest(robot_now()); }
 
  private:
   void subscribe();
@@ -88,6 +93,8 @@ class AgentNode {
   RobotId robot_;
   Duration cycle_;
   double max_speed_mps_;  // speed limit of the scenario's robots
+  Duration max_stopping_time_;
+  std::optional<Time> stopping_since_;  // by this process's clock
   Agent agent_;
   ClockMonitor clocks_;
   WorldStateDecoder world_;

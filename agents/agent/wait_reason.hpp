@@ -16,6 +16,7 @@ enum class WaitReason : std::uint8_t {
   kOthersNotRegistered,  ///< the coordinator does not grant yet
   kRobotSilent,          ///< the robot sends no reports
   kTooManyVersions,      ///< the robot may execute the maximum number of versions that can be tracked
+  kEnding,               ///< the agent's process is asked to end
   kOrdersUnknown,        ///< no coordinator that remembers all orders has been heard
   kHeld,                 ///< an order holds the robot
   kNoOrder,              ///< the robot has no order
@@ -47,6 +48,8 @@ constexpr const char* to_text(WaitReason reason) {
       return "reports from the robot";
     case WaitReason::kTooManyVersions:
       return "a report that shows which versions the robot no longer executes";
+    case WaitReason::kEnding:
+      return "its own end, as soon as the robot rests";
     case WaitReason::kOrdersUnknown:
       return "a coordinator that remembers all orders";
     case WaitReason::kHeld:

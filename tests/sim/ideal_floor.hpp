@@ -31,6 +31,8 @@ class IdealFloor {
   /// Starts another agent of a robot; earlier ones keep running.
   FaultyBus& start_agent(RobotId robot);
   void kill_agents(RobotId robot) { agents_.erase(robot); }
+  /// The robot's first agent that is running. Precondition: there is one.
+  AgentNode& agent(RobotId robot) { return *agents_.find(robot)->second.node; }
   /// The buses of the robot's agents, in order of their start.
   std::vector<FaultyBus*> agent_buses(RobotId robot);
 

@@ -9,6 +9,7 @@
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/motion/time_to_rest.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
 #include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
@@ -46,7 +47,8 @@ struct Floor {
   SimNetwork network{1, kBegin, scenario.network};
   SimBus agent_bus{network, {1, {}}}, other_bus{network, {2, {}}};
   Duration robot_clock;  ///< offset of the robot's clock
-  bool echoes_request_time = true, denies = false, is_heard = true;
+  bool echoes_request_time = true, denies = false, is_heard = true, is_robot_silent = false;
+  std::optional<Trajectory> executing;  ///< nullopt: the robot rests
   std::vector<Time> commands, registrations, proposals, order_reports;
   std::optional<msg::Command> last_command;
   Time command_received_at{};  ///< by the robot's clock
@@ -97,12 +99,14 @@ struct Floor {
     verdicts.publish(verdict, network.now());
   }
   void send_robot_report() {
+    if (is_robot_silent) return;
     RobotReport robot_report;
     robot_report.robot = kRobot;
     robot_report.robot_incarnation = 5;
     robot_report.obeyed_incarnation = kSelf;
     robot_report.valid_at = robot_now();
     robot_report.executing = {kRobot, 0, 0, 0, Trajectory::resting(kBegin + robot_clock, {0, 0})};
+    if (executing) robot_report.executing = {kRobot, kSelf, 9, 0, *executing};
     if (last_command) {
       robot_report.obeyed_epoch = last_command->epoch();
       robot_report.command = {{time_from_ns(last_command->header().stamp_ns()), command_received_at}};
@@ -206,6 +210,44 @@ TEST_CASE("an agent whose robot may drive again proposes immediately unless the 
   CHECK(floor.proposals.size() == (phase < 0.75 ? 1 : 0));
   floor.network.run_until(heard_at + floor.cycle());
   CHECK(floor.proposals.size() == 1);
+}
+
+TEST_CASE(
+    "an agent that is asked to end proposes nothing more, and keeps its robot and coordinator informed") {
+  Floor floor;
+  floor.denies = true;
+  floor.run(1s);
+  REQUIRE_FALSE(floor.proposals.empty());
+  (void)floor.node.come_to_rest();
+  floor.run(100ms);
+  floor.proposals.clear();
+  floor.commands.clear();
+  floor.registrations.clear();
+  floor.run(3s);
+  CHECK(floor.proposals.empty());
+  CHECK(floor.commands.size() >= 170);
+  CHECK(floor.node.come_to_rest());
+}
+
+TEST_CASE("an agent that is asked to end does not end while its robot executes a version that moves it") {
+  Floor floor;
+  floor.run(1s);
+  const bool is_known = GENERATE(true, false);
+  CAPTURE(is_known);
+  // The robot reports a version that lasts long, or falls silent after it has.
+  floor.executing = Trajectory(floor.robot_now(), State{Vec2(0, 0), Vec2(1, 0)});
+  floor.executing->append(50s, Vec2(0, 0));
+  floor.run(100ms);
+  floor.is_robot_silent = !is_known;
+  CHECK_FALSE(floor.node.is_at_rest());
+  Duration waited{0};
+  for (; !floor.node.come_to_rest(); waited += 100ms) {
+    REQUIRE(waited < 10s);
+    floor.run(100ms);
+  }
+  // It gives up after twice the time in which a robot comes to rest.
+  CHECK(waited >= 2 * time_to_rest(floor.scenario.limits) - 100ms);
+  CHECK_FALSE(floor.node.is_at_rest());
 }
 
 TEST_CASE("an agent confirms each announced hold of its robot, even if the announcement is a repetition") {
