@@ -60,6 +60,11 @@ Duration max_timestamp_error(const DriveSettings& settings) {
   return from_seconds(drift_bound_m(settings.tracking_bound_m) / settings.limits.speed_mps);
 }
 
+/// Maximum distance between fixes of a base at rest.
+double fix_tolerance_m(const DriveSettings& settings) {
+  return kAgreement * settings.fix_noise_m + kMinAgreement_m;
+}
+
 template <typename Vector>
 Vector limited(const Vector& vector, double max_norm) {
   const double norm = vector.norm();
@@ -93,12 +98,14 @@ DrivenRobot::DrivenRobot(RobotId robot, const DriveSettings& settings, const rob
       commands_(settings.latency),
       timestamp_check_(max_timestamp_error(settings)),
       estimator_({0, 0}, 0, now, estimator_settings(settings)),
+      base_rest_(fix_tolerance_m(settings)),
       moved_at_(now + kStoppingTime) {}
 
 void DrivenRobot::on_command(const Command& command, Time now, robot::StableMemory& memory) {
   if (!pass_command(command, now, side_, memory)) return;
   target_heading_rad_ = wrapped_rad(command.desired_heading_rad);
   if (!command.fix) return;
+  if (command.fix->captured_at <= now) base_rest_.on_fix(*command.fix);
   if (!side_.has_pose())
     add_first_fix(*command.fix, now);
   else if (command.fix->captured_at <= now)
@@ -127,7 +134,7 @@ void DrivenRobot::add_first_fix(const PoseFix& fix, Time now) {
       fix.captured_at > moved_at_ && fix.captured_at <= now &&
       (first_fix_count_ == 0 || fix.captured_at > first_fixes_[first_fix_count_ - 1].captured_at);
   if (!is_usable) return;
-  const double tolerance_m = kAgreement * settings_.fix_noise_m + kMinAgreement_m;
+  const double tolerance_m = fix_tolerance_m(settings_);
   const auto agrees = [&](const PoseFix& other) {
     return (other.position_m - fix.position_m).norm() <= tolerance_m;
   };
@@ -246,7 +253,7 @@ BodyVelocity DrivenRobot::tick(Time now, robot::StableMemory& memory) {
   side_.check_reference(to_ns(now), estimate(now), memory);
   if (had_pose && !side_.has_pose()) forget_pose(now);
   BodyVelocity command;
-  if (side_.has_pose() && !side_.is_lifted()) command = track(now);
+  if (side_.has_pose() && !side_.is_lifted() && !stands_still_) command = track(now);
   if (!is_finite(command)) {
     forget_pose(now);
     command = {};

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "agents/adapters/base_rest.hpp"
 #include "agents/adapters/commanded_motion.hpp"
 #include "agents/adapters/driver.hpp"
 #include "agents/adapters/measured_motion.hpp"
@@ -56,8 +57,13 @@ class DrivenRobot {
   /// The robot's report, without robot_incarnation. Precondition: may_report().
   RobotReport robot_report(Time now);
 
-  /// Whether the base is at rest, and stays at rest unless it receives further versions.
+  /// Whether the robot's versions have ended and the base has received the commands of their ends, so that it
+  /// stays at rest unless further versions arrive.
   bool is_at_rest(Time now) const;
+  /// Whether fixes show no motion of the base.
+  bool is_base_at_rest(Time now) const { return base_rest_.is_at_rest(now); }
+  /// From now on commands no motion, not even a correction.
+  void stand_still() { stands_still_ = true; }
 
   const robot::RobotSide<float>& side() const { return side_; }
   RobotId id() const { return robot_; }
@@ -92,6 +98,8 @@ class DrivenRobot {
   OdometryTimestampCheck timestamp_check_;
   std::uint64_t misdated_ = 0;
   PoseEstimator estimator_;
+  BaseRest base_rest_;
+  bool stands_still_ = false;
   /// Oldest fix that is waiting for the odometry of its capture time, which arrives later.
   std::optional<PoseFix> waiting_fix_;
   double target_heading_rad_ = 0;

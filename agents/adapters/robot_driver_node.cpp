@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/robot_codec.hpp"
+#include "common/motion/time_to_rest.hpp"
 #include "common/protocol/report_period.hpp"
 #include "common/protocol/senders.hpp"
 #include "common/robot/own_stop_text.hpp"
@@ -16,6 +17,9 @@ using std::chrono::milliseconds;
 static_assert(DrivenRobot::kPeriod <= kMaxReportDelay);
 // Version starts farther ahead than this get no timer; the control period handles them.
 constexpr Duration kMaxTimerAhead = milliseconds(200);
+// At the end of the process, rest is commanded for this time, and longer while fixes show that bases move.
+// Some bases keep the velocity of the last command that they receive.
+constexpr Duration kMinStandstill = milliseconds(300), kMaxStandstill = milliseconds(2000);
 
 }  // namespace
 
@@ -28,6 +32,8 @@ RobotDriverNode::RobotDriverNode(Bus& bus, const Scenario& scenario, const std::
       driver_(driver),
       clock_(bus.now()),
       next_tick_(bus.now()),
+      latency_(settings.latency),
+      max_stopping_time_(2 * time_to_rest(settings.limits)),
       counters_(bus, static_cast<std::uint32_t>(Sender::kRobots), incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   const Time begin = bus.now();
@@ -70,12 +76,14 @@ void RobotDriverNode::tick() {
 }
 
 void RobotDriverNode::on_command(Entry& entry, const msg::Command& message) {
-  if (comes_to_rest_) return;
   const Time now = clock();
-  if (const auto command = decode(message, entry.robot->id(), now))
+  if (auto command = decode(message, entry.robot->id(), now)) {
+    // Fixes are still needed.
+    if (stopping_since_) command->version.reset();
     entry.robot->on_command(*command, now, *entry.memory);
-  else
+  } else {
     entry.robot->on_malformed_command(now);
+  }
   publish_if_changed(entry, now);
   watch_start(entry, now);
 }
@@ -143,9 +151,33 @@ bool RobotDriverNode::is_commanded() const {
 }
 
 bool RobotDriverNode::come_to_rest() {
-  comes_to_rest_ = true;
   const Time now = clock();
-  return std::ranges::all_of(robots_, [&](const Entry& entry) { return entry.robot->is_at_rest(now); });
+  if (!stopping_since_) stopping_since_ = now;
+  const auto all = [this](auto condition) {
+    return std::ranges::all_of(robots_, [&](const Entry& entry) { return condition(*entry.robot); });
+  };
+  if (!stand_still_since_) {
+    // A robot that something keeps moving makes one stop of its own after the other.
+    const bool is_overdue = now - *stopping_since_ >= max_stopping_time_;
+    const bool have_ended = all([now](const DrivenRobot& robot) { return robot.is_at_rest(now); });
+    if (!have_ended && !is_overdue) return false;
+    stand_still_since_ = now;
+    for (Entry& entry : robots_) entry.robot->stand_still();
+  }
+  const Duration commanded = now - *stand_still_since_ - latency_;
+  if (commanded < kMinStandstill) return false;
+  return commanded >= kMaxStandstill ||
+         all([now](const DrivenRobot& robot) { return robot.is_base_at_rest(now); });
+}
+
+std::vector<RobotId> RobotDriverNode::moving_robots() {
+  const Time now = clock();
+  std::vector<RobotId> moving;
+  for (const Entry& entry : robots_) {
+    if (!entry.robot->is_at_rest(now) || !entry.robot->is_base_at_rest(now))
+      moving.push_back(entry.robot->id());
+  }
+  return moving;
 }
 
 void RobotDriverNode::count_drops(DropCounters& drops) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -34,9 +35,11 @@ class RobotDriverNode {
   void count_drops(DropCounters& drops) const;
   /// Whether any robot obeys an agent.
   bool is_commanded() const;
-  /// Stops accepting commands, so all robots come to rest at the ends of their versions. Returns whether all
-  /// robots are at rest.
-  bool come_to_rest();
+  /// Accepts no more versions, so all robots come to rest at the ends of those that they have. From then on
+  /// commands rest, for as long as bases may still move. Returns whether that has lasted long enough.
+  [[nodiscard]] bool come_to_rest();
+  /// The robots that still drive a version, or that fixes show in motion.
+  std::vector<RobotId> moving_robots();
   const DrivenRobot& robot(std::size_t index) const { return *robots_[index].robot; }
 
  private:
@@ -72,7 +75,10 @@ class RobotDriverNode {
   std::unordered_map<RobotId, std::size_t> index_of_;
   std::vector<BaseCommand> commands_;
   Time next_tick_;
-  bool comes_to_rest_ = false;
+  Duration latency_;
+  Duration max_stopping_time_;
+  std::optional<Time> stopping_since_;     ///< no more versions are accepted
+  std::optional<Time> stand_still_since_;  ///< all versions have ended, and only rest is commanded
   CounterPublisher counters_;
 };
 

@@ -15,6 +15,7 @@
 #include "common/process/bases_bus.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/protocol/moving_text.hpp"
 #include "common/protocol/senders.hpp"
 
 namespace sidestep {
@@ -102,7 +103,8 @@ int main(int argc, char** argv) {
     auto nodes = std::make_shared<Nodes>(bus, scenario, incarnation, options);
     log_events_of(nodes->node);
     return {nodes, [&node = nodes->node] { return node.is_commanded(); },
-            [&node = nodes->node] { return node.come_to_rest(); }};
+            [&node = nodes->node] { return node.come_to_rest(); },
+            [&node = nodes->node] { return still_moving_text(node.moving_robots()); }};
   };
   return run_process(argc, argv, program);
 }

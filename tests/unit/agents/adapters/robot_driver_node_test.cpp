@@ -137,6 +137,9 @@ TEST_CASE("when their process must end, robots finish their versions and accept 
     scene.run(20ms);
   }
   REQUIRE_FALSE(scene.robot_reports.empty());
+  CHECK(scene.node->moving_robots().empty());
+  CHECK_FALSE(scene.node->come_to_rest());
+  scene.run(DriveSettings{}.latency + 300ms);
   CHECK(scene.node->come_to_rest());
 
   Scene driving;
@@ -163,11 +166,50 @@ TEST_CASE("when their process must end, robots finish their versions and accept 
   // The base obeys after its latency.
   while (driving.network.now() < first.trajectory.end() + DriveSettings{}.latency) {
     CHECK_FALSE(driving.node->come_to_rest());
+    CHECK(driving.node->moving_robots() == std::vector<RobotId>{4});
     driving.run(10ms);
   }
-  CHECK(driving.node->come_to_rest());
+  // The last commands are those to stand still: some bases keep the last velocity for a while.
+  Duration standstill{0};
+  for (; !driving.node->come_to_rest(); standstill += 10ms) {
+    REQUIRE(standstill < 1s);
+    driving.run(10ms);
+    CHECK(driving.driver.max_speed_mps == 0);
+  }
+  CHECK(standstill >= DriveSettings{}.latency + 300ms);
   CHECK(driving.node->robot(0).side().executing().number == first.number);
-  CHECK(driving.driver.max_speed_mps < 0.01);
+}
+
+TEST_CASE("when their process must end, bases that fixes show in motion are commanded to rest for longer") {
+  const bool stops = GENERATE(true, false);
+  CAPTURE(stops);
+  Scene scene;
+  for (int i = 0; i < 60; ++i) {
+    scene.command(0, 100, 1);
+    scene.run(20ms);
+  }
+  // The base slides at 0.5 m/s, for a second or for ever.
+  Duration lasted{0};
+  const auto send_fix = [&] {
+    const double slid_s = to_seconds(stops ? std::min<Duration>(lasted, 1s) : lasted);
+    Command command;
+    command.robot = 4;
+    command.incarnation = 100;
+    command.epoch = 1;
+    command.fix = PoseFix{scene.agent_bus.now() - 20ms, Vec2(0.5 * slid_s, 0), 0};
+    auto message = encode(command);
+    scene.writers[0].publish(message, scene.agent_bus.now());
+  };
+  bool has_moved = false;
+  for (; !scene.node->come_to_rest(); lasted += 20ms) {
+    REQUIRE(lasted < 10s);
+    send_fix();
+    scene.run(20ms);
+    has_moved |= scene.node->moving_robots() == std::vector<RobotId>{4};
+  }
+  CHECK(has_moved);
+  CHECK(lasted >= (stops ? 1100ms : 2100ms));
+  CHECK(lasted <= (stops ? 2000ms : 4000ms));
 }
 
 TEST_CASE("restarted robots remember the agent that they obey, and count commands that cannot be stored") {
