@@ -5,6 +5,7 @@
 #include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/protocol/moving_text.hpp"
 #include "common/protocol/senders.hpp"
 #include "simulator/bases/base_options.hpp"
 #include "simulator/bases/league_server.hpp"
@@ -100,7 +101,9 @@ RunningNodes start_robots(Bus& bus, const Scenario& scenario, const Options& opt
                           Incarnation incarnation) {
   auto nodes = std::make_shared<Robots>(bus, scenario, options, incarnation);
   log_events_of(nodes->simulator);
-  return {nodes, [&nodes = *nodes] { return nodes.simulator.is_commanded(); }};
+  return {nodes, [&nodes = *nodes] { return nodes.simulator.is_commanded(); },
+          [&nodes = *nodes] { return nodes.simulator.come_to_rest(); },
+          [&nodes = *nodes] { return still_moving_text(nodes.simulator.moving_robots()); }};
 }
 
 RunningNodes start_league(DdsBus& bus, const Scenario& scenario, const Options& options,

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/robot_codec.hpp"
+#include "common/motion/time_to_rest.hpp"
 #include "common/protocol/report_period.hpp"
 #include "common/protocol/senders.hpp"
 #include "simulator/world/disturbance_codec.hpp"
@@ -22,6 +23,8 @@ constexpr Duration kMaxCatchUp = milliseconds(5000);
 constexpr Duration kFrameExpiry = milliseconds(200);
 // Version starts farther ahead than this get no timer; the periodic wake-up handles them.
 constexpr Duration kMaxTimerAhead = milliseconds(200);
+// A body that is slower than this is at rest.
+constexpr double kRestingBody_mps = 0.02;
 
 }  // namespace
 
@@ -34,6 +37,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
       field_(scenario.field),
       radius_m_(scenario.radius_m),
       incarnation_(incarnation),
+      max_stopping_time_(2 * time_to_rest(scenario.limits)),
       clock_(bus.now()),
       world_(scenario, bus.now(), seed),
       cameras_(scenario, bus.now(), Rng(seed + 1).bits()),
@@ -112,10 +116,12 @@ void SimulatorNode::on_command(std::size_t robot, const msg::Command& message) {
   }
   const Time now = clock();
   advance(now);
-  if (const auto command = decode(message, world_.id(robot), world_.robot_time(robot, now)))
+  if (auto command = decode(message, world_.id(robot), world_.robot_time(robot, now))) {
+    if (stopping_since_) command->version.reset();
     world_.on_command(robot, *command, now);
-  else
+  } else {
     world_.on_malformed_command(robot, now);
+  }
   publish_pending_reports(now);
   watch_start(robot, now);
 }
@@ -156,6 +162,25 @@ bool SimulatorNode::is_commanded() const {
     if (world_.firmware(i).obeyed_incarnation() != 0) return true;
   }
   return false;
+}
+
+bool SimulatorNode::come_to_rest() {
+  if (!stopping_since_) stopping_since_ = bus_.now();
+  return moving_robots().empty() || bus_.now() - *stopping_since_ >= max_stopping_time_;
+}
+
+std::vector<RobotId> SimulatorNode::moving_robots() {
+  const Time now = clock();
+  std::vector<RobotId> moving;
+  for (std::size_t i = 0; i < world_.robot_count(); ++i) {
+    const Firmware& firmware = world_.firmware(i);
+    const bool drives = world_.next_start(i) != Time::max() ||
+                        (world_.may_report(i) && !firmware.is_lifted() &&
+                         firmware.executing().trajectory.end() > world_.robot_time(i, now));
+    if (drives || world_.bodies()[i].velocity_mps().norm() >= kRestingBody_mps)
+      moving.push_back(world_.id(i));
+  }
+  return moving;
 }
 
 void SimulatorNode::watch_start(std::size_t robot, Time now) {

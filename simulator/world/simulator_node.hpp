@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -43,6 +44,12 @@ class SimulatorNode {
 
   /// Whether any robot obeys an agent. A restart of this process would make the robot forget the agent.
   bool is_commanded() const;
+
+  /// Accepts no more versions, so all robots come to rest. Returns whether all rest, or have had twice the
+  /// time that they need.
+  [[nodiscard]] bool come_to_rest();
+  /// The robots that move, or have a version that will move them.
+  std::vector<RobotId> moving_robots();
 
   const World& world() const { return world_; }
   const Cameras& cameras() const { return cameras_; }
@@ -88,6 +95,8 @@ class SimulatorNode {
   Field field_;
   double radius_m_;
   Incarnation incarnation_;
+  Duration max_stopping_time_;
+  std::optional<Time> stopping_since_;  // by the bus's clock
   Time clock_;
   World world_;
   EventReporter events_;

@@ -61,6 +61,8 @@ struct Scene {
   std::vector<msg::GroundTruth> truths;
 };
 
+Vec2 scenario_start(const Scene& scene, std::size_t robot) { return scene.scenario.robots[robot].start_m; }
+
 TEST_CASE("every idle robot reports about once per cycle, and not all robots at the same time") {
   Scene scene(separated_robots(10));
   scene.run(std::chrono::seconds(2));
@@ -160,6 +162,33 @@ TEST_CASE("a robot decides by its own clock on arrival whether a command is late
   scene.run(milliseconds(50));
   CHECK(scene.node.world().firmware(0).counts().refused_late == 1);
   CHECK(scene.robot_reports[0].back().executing().version_number() == 0);
+}
+
+TEST_CASE("a simulator that is asked to end accepts no more versions and ends when all robots rest") {
+  Scene scene(separated_robots(2));
+  scene.run(milliseconds(50));
+  const auto drive = [&](VersionNumber number, VersionNumber base, const State& from, Time start) {
+    Trajectory trajectory(start, from);
+    trajectory.append(milliseconds(300), Vec2(2, 0));
+    append_stop(trajectory, 4);
+    return Version{1, 9, number, base, trajectory};
+  };
+  const Version first =
+      drive(1, 0, {scenario_start(scene, 1), Vec2(0, 0)}, scene.network.now() + milliseconds(50));
+  scene.send(1, test::command_with(first));
+  scene.run(milliseconds(20));
+  CHECK(scene.node.moving_robots() == std::vector<RobotId>{1});
+  CHECK_FALSE(scene.node.come_to_rest());
+  const Time next = first.trajectory.start() + milliseconds(200);
+  scene.send(1, test::command_with(drive(2, 1, first.trajectory.state_at(next), next)));
+  while (!scene.node.come_to_rest()) {
+    REQUIRE(scene.network.now() < first.trajectory.end() + milliseconds(500));
+    scene.run(milliseconds(1));
+  }
+  CHECK(scene.network.now() >= first.trajectory.end());
+  CHECK(scene.node.moving_robots().empty());
+  CHECK(scene.node.world().firmware(1).executing().number == 1);
+  CHECK(scene.node.world().bodies()[1].velocity_mps().norm() < 0.02);
 }
 
 TEST_CASE("frames are published exactly the scenario's delay after their capture") {
