@@ -105,7 +105,8 @@ struct ProcessGroup::Child {
   int input = -1;
   int output = -1;
   bool is_running = false;
-  bool must_restart = false;  // restart the process once, as soon as it has ended
+  bool must_restart = false;     // restart the process once, as soon as it has ended
+  bool is_asked_to_end = false;  // do not restart the process when it has ended
   SteadyTime started{};
   SteadyTime restart_at = SteadyTime::max();
   Milliseconds backoff = kMinBackoff;
@@ -180,6 +181,7 @@ void ProcessGroup::restart(const ChildSpec& spec) {
   Child* const child = find(spec.name);
   if (!child) throw std::runtime_error("there is no process " + spec.name + " to start again");
   child->spec = spec;
+  child->is_asked_to_end = false;
   if (child->is_running) {
     child->must_restart = true;
     kill(child->pid, SIGKILL);
@@ -279,24 +281,29 @@ bool ProcessGroup::reap(Child& child, ChildEvent& event) {
   rusage used{};
   if (!child.is_running || wait4(child.pid, &status, WNOHANG, &used) != child.pid) return false;
   add(used, resource_use_[child.spec.name]);
-  child.is_running = false;
-  close_fd(child.pidfd);
   close_fd(child.input);
   drain(child);
-  close_fd(child.output);  // a grandchild may still hold the other end
+  release(child);
   event = {ChildEvent::Kind::kDied, child.spec.name, child.pid, reason_of(status), false};
   const auto now = steady_clock::now();
   if (child.must_restart && !is_terminating_) {
     child.must_restart = false;
     child.restart_at = now;
     event.will_restart = true;
-  } else if (child.spec.restart && !is_terminating_) {
+  } else if (child.spec.restart && !child.is_asked_to_end && !is_terminating_) {
     const bool ran_long = now - child.started > kMaxBackoff;
     child.backoff = ran_long ? kMinBackoff : std::min(2 * child.backoff, kMaxBackoff);
     child.restart_at = now + child.backoff;
     event.will_restart = true;
   }
   return true;
+}
+
+void ProcessGroup::release(Child& child) {
+  child.is_running = false;
+  close_fd(child.pidfd);
+  close_fd(child.input);
+  close_fd(child.output);  // a grandchild may still hold the other end
 }
 
 void ProcessGroup::start_due(std::vector<ChildEvent>& events) {
@@ -324,8 +331,30 @@ std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout, std::span<const
   }
 }
 
-void ProcessGroup::ask_to_end(Child& child) {
+bool ProcessGroup::ask_to_end(const std::string& name) {
+  Child* const child = find(name);
+  if (!child) return false;
+  const bool is_running = child->is_running;
+  ask(*child);
+  return is_running;
+}
+
+void ProcessGroup::abandon() {
+  for (const auto& child : children_) {
+    if (child->spec.outlasts_run) continue;
+    ask(*child);
+    if (!child->is_running) continue;
+    if (drives_robots(*child))
+      release(*child);
+    else
+      kill(child->pid, SIGKILL);
+  }
+}
+
+void ProcessGroup::ask(Child& child) {
   child.restart_at = SteadyTime::max();
+  child.must_restart = false;
+  child.is_asked_to_end = true;
   if (!child.is_running) return;
   if (child.input >= 0)
     close_fd(child.input);
@@ -337,7 +366,7 @@ void ProcessGroup::end_all(Milliseconds timeout, const Selection& should_end) {
   Milliseconds rest_time{0};
   for (const auto& child : children_) {
     if (!should_end(*child)) continue;
-    ask_to_end(*child);
+    ask(*child);
     rest_time = std::max(rest_time, child->spec.rest_time);
   }
   const SteadyTime until = steady_clock::now() + timeout + rest_time;

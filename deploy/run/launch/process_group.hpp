@@ -37,6 +37,8 @@ class ProcessGroup : public Processes {
   std::vector<ChildEvent> poll(Milliseconds timeout) override { return poll(timeout, {}); }
   /// Like poll(), but also returns as soon as one of these descriptors is readable.
   std::vector<ChildEvent> poll(Milliseconds timeout, std::span<const int> descriptors);
+  [[nodiscard]] bool ask_to_end(const std::string& name) override;
+  void abandon() override;
   std::vector<std::string> terminate(Milliseconds timeout) override;
   /// Like terminate(), but also ends the children that outlast the run.
   std::vector<std::string> terminate_all(Milliseconds timeout);
@@ -59,9 +61,10 @@ class ProcessGroup : public Processes {
   void drain(Child& child);
   void send_input(Child& child);
   bool reap(Child& child, ChildEvent& event);
+  static void release(Child& child);
   void start_due(std::vector<ChildEvent>& events);
   static bool drives_robots(const Child& child);
-  void ask_to_end(Child& child);
+  static void ask(Child& child);
   using Selection = std::function<bool(const Child&)>;
   bool has_running(const Selection& selection) const;
   /// Asks children to end, and waits for them up to the timeout.

@@ -12,7 +12,6 @@
 #include <optional>
 #include <poll.h>
 #include <stdexcept>
-#include <sys/eventfd.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -20,7 +19,7 @@
 
 #include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
-#include "common/process/stop_signals.hpp"
+#include "deploy/run/launch/stop_requests.hpp"
 
 // glibc 2.36 declares the functions of this header without C linkage.
 extern "C" {
@@ -36,8 +35,6 @@ using std::chrono::steady_clock;
 
 constexpr int kDirectorSocket = 3;  // descriptor of the socket in the director
 constexpr auto kTerminationTimeout = 3000ms;
-constexpr auto kRepeatedStop =
-    1000ms;  // a starting director does not handle signals yet, so they are repeated
 constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // pause before the next director; doubles each time
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
@@ -136,6 +133,10 @@ class KeptProcesses : public Processes {
     for (const Json& event : answer) events.push_back(child_event(event));
     return events;
   }
+  bool ask_to_end(const std::string& name) override {
+    return ask({{"do", "ask_to_end"}, {"name", name}}, false);
+  }
+  void abandon() override { ask({{"do", "abandon"}}, true); }
   std::vector<std::string> terminate(Milliseconds timeout) override {
     return ask<std::vector<std::string>>({{"do", "terminate"}, {"timeout_ms", timeout.count()}}, {});
   }
@@ -227,6 +228,11 @@ class Keeper {
       return group_.send_signal(request.at("name"), request.at("signal"));
     } else if (what == "input") {
       group_.add_input(request.at("name"), request.at("more"));
+    } else if (what == "ask_to_end") {
+      return group_.ask_to_end(request.at("name"));
+    } else if (what == "abandon") {
+      is_ending_ = true;
+      group_.abandon();
     } else if (what == "terminate") {
       is_ending_ = true;
       return group_.terminate(ProcessGroup::Milliseconds(request.at("timeout_ms").get<int>()));
@@ -297,11 +303,6 @@ std::optional<int> end_of(const Director& director, std::string& reason) {
   return std::nullopt;
 }
 
-bool is_readable(int descriptor) {
-  pollfd entry{descriptor, POLLIN, 0};
-  return ::poll(&entry, 1, 0) == 1;
-}
-
 /// Ends the other processes. Then waits while those that outlast the run are running, until `stop` is
 /// readable.
 void keep_outlasting(ProcessGroup& group, const std::function<void()>& on_outlasting, int stop) {
@@ -314,19 +315,12 @@ void keep_outlasting(ProcessGroup& group, const std::function<void()>& on_outlas
 }  // namespace
 
 int keep_processes(ProcessGroup& group, const DirectorWork& work) {
-  const int stop = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  if (stop < 0) fail("cannot create an event");
-  const StopSignals signals([stop] {
-    const int saved_errno = errno;
-    const std::uint64_t one = 1;
-    (void)!write(stop, &one, sizeof one);
-    errno = saved_errno;
-  });
+  const StopRequests requests;
+  PassedSignal stop(SIGTERM, requests.stop()), give_up(SIGINT, requests.give_up());
   Keeper keeper(group);
   std::vector<std::string> deaths;
   std::optional<int> code;
   auto pause = kPause;
-  std::optional<steady_clock::time_point> asked_at, first_asked_at;
   while (!code) {
     const Director director = start_director(work, deaths);
     keeper.begin();
@@ -335,17 +329,18 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     while (!is_readable(director.pidfd)) {
       std::vector<int> watched{director.pidfd};
       if (is_connected) watched.push_back(director.socket);
-      if (!asked_at) watched.push_back(stop);
+      for (const PassedSignal* signal : {&stop, &give_up}) {
+        if (!signal->first_at()) watched.push_back(signal->request());
+      }
       keeper.poll(watched);
       if (is_connected && is_readable(director.socket)) is_connected = keeper.serve(director.socket);
       const auto now = steady_clock::now();
-      if (is_readable(stop) && !keeper.is_ending() && (!asked_at || now - *asked_at > kRepeatedStop)) {
-        if (!first_asked_at) first_asked_at = now;
-        asked_at = now;
-        kill(director.pid, SIGTERM);
+      if (!keeper.is_ending()) {
+        stop.update(director.pid, now);
+        give_up.update(director.pid, now);
       }
       if ((keeper.has_ended_all() || !is_connected) && !idle_since) idle_since = now;
-      const bool is_stuck = (first_asked_at && now - *first_asked_at > work.shutdown_timeout) ||
+      const bool is_stuck = (stop.first_at() && now - *stop.first_at() > work.shutdown_timeout) ||
                             (idle_since && now - *idle_since > work.exit_timeout);
       if (is_stuck) {
         group.log("the director of the run has not ended in time and is killed");
@@ -356,13 +351,13 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     std::string reason;
     code = end_of(director, reason);
     if (code) {
-      keep_outlasting(group, work.on_outlasting, stop);
+      keep_outlasting(group, work.on_outlasting, requests.stop());
       break;
     }
     group.log("the director of the run died: " + reason);
     print_to(stderr, "the process that directs the run died: {}\n", reason);
     deaths.push_back(reason);
-    if (!asked_at && !keeper.is_ending() && group.running() > 0) {
+    if (!stop.first_at() && !keeper.is_ending() && group.running() > 0) {
       keeper.poll_for(pause);
       pause = std::min(2 * pause, kMaxPause);
       continue;
@@ -372,7 +367,6 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     code = kExitFailure;
   }
   (void)group.terminate_all(kTerminationTimeout);
-  close(stop);
   return *code;
 }
 

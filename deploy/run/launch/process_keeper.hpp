@@ -31,9 +31,9 @@ struct DirectorWork {
 /// Runs the work in a separate process, the director, which uses the network. This process does not use the
 /// network, and keeps the processes in the group. So they continue if a signal kills the director. Another
 /// director then takes its place, after a pause that doubles each time, up to a minute. When a director ends,
-/// the remaining processes are also ended. SIGINT and SIGTERM are passed on to the director. A director that
-/// does not end in time is killed. If this process dies, the director is asked to end, and finds that all
-/// processes have ended.
+/// the remaining processes are also ended. SIGINT and SIGTERM are passed on to the director as SIGTERM, which
+/// may arrive repeatedly, and a further SIGINT as SIGINT. A director that does not end in time is killed. If
+/// this process dies, the director is asked to end, and finds that all processes have ended.
 ///
 /// Processes that outlast the run (ChildSpec::outlasts_run) continue after a director has ended with an exit
 /// code, until they end themselves, or SIGINT or SIGTERM arrives, possibly before the director's end.

@@ -55,6 +55,12 @@ class Processes {
   virtual void restart(const ChildSpec& spec) = 0;
   /// Waits for events of children, up to the timeout, and returns them. Restarts children that are due.
   virtual std::vector<ChildEvent> poll(Milliseconds timeout) = 0;
+  /// Asks the running child with this name to end, and does not start it again, not even if it is about to be
+  /// restarted. Does not wait. False if none is running.
+  [[nodiscard]] virtual bool ask_to_end(const std::string& name) = 0;
+  /// Ends all children at once, except those that outlast the run: kills them, but only asks those that drive
+  /// robots, and does not wait for these.
+  virtual void abandon() = 0;
   /// Asks all children to end, those that drive robots before the others. Kills those that have not ended
   /// after the timeout plus their rest time, and waits for all to end. Returns the names of the killed
   /// children. Children that outlast the run continue.

@@ -208,6 +208,50 @@ TEST_CASE("terminating ends children by SIGTERM, then by SIGKILL, and restarts n
   CHECK(group.poll(0ms).empty());
 }
 
+TEST_CASE("a child that is asked to end is not waited for, and not restarted when it has ended") {
+  ProcessGroup group(log_path());
+  group.start(shell("agent", "trap 'echo bye; exit 0' TERM; echo ready; while :; do sleep 0.01; done", true));
+  group.start(shell("vision", "exec sleep 1000", true));
+  wait_for_line(group, "agent", "ready");
+  CHECK(group.ask_to_end("agent"));
+  const ChildEvent event = next_event(group);
+  CHECK(event.name == "agent");
+  CHECK(event.reason == "exit code 0");
+  CHECK_FALSE(event.will_restart);
+  CHECK_FALSE(group.ask_to_end("agent"));
+  CHECK_FALSE(group.ask_to_end("nobody"));
+  CHECK(group.running() == 1);
+  REQUIRE(group.send_signal("vision", SIGKILL));
+  CHECK(next_event(group).will_restart);
+  CHECK_FALSE(group.ask_to_end("vision"));  // it is about to be restarted
+  CHECK(group.poll(500ms).empty());
+}
+
+TEST_CASE("abandoning kills all children at once, but only asks those that drive robots to end") {
+  const TemporaryFolder folder;
+  pid_t robots = 0;
+  {
+    ProcessGroup group(log_path());
+    ChildSpec spec = shell("robots", "trap 'while [ ! -e " + folder.file("rest") +
+                                         " ]; do sleep 0.01; done; exit 7' TERM; echo ready; while :; do "
+                                         "sleep 0.01; done");
+    spec.rest_time = 10s;
+    robots = group.start(spec);
+    group.start(shell("agent", "trap '' TERM; echo ready; while :; do sleep 0.01; done", true));
+    wait_for_line(group, "robots", "ready");
+    wait_for_line(group, "agent", "ready");
+    group.abandon();
+    CHECK(group.running() == 1);
+    CHECK(next_event(group).reason == "signal 9 (SIGKILL)");
+    CHECK(group.running() == 0);
+  }
+  int status = 0;
+  CHECK(waitpid(robots, &status, WNOHANG) == 0);
+  std::ofstream(folder.file("rest")) << "at rest\n";
+  REQUIRE(waitpid(robots, &status, 0) == robots);
+  CHECK(WEXITSTATUS(status) == 7);
+}
+
 TEST_CASE("terminating spares a child that outlasts the run, but not at the end of the group") {
   pid_t page = 0;
   {

@@ -24,6 +24,8 @@ using Deaths = std::vector<std::string>;
 
 /// Set in a director when the director is asked to end.
 volatile std::sig_atomic_t is_asked_to_end = 0;
+/// Set in a director when the user presses Ctrl-C again.
+volatile std::sig_atomic_t is_interrupted = 0;
 
 void obey_sigterm() {
   is_asked_to_end = 0;
@@ -171,6 +173,54 @@ TEST_CASE("a director that is ending its processes is not asked to end again and
   };
   CHECK(f.keep(ends_slowly) == 3);
   CHECK(f.lost.empty());
+}
+
+TEST_CASE("a second Ctrl-C reaches the director as such, and repeated requests to end do not") {
+  Fixture f;
+  const bool is_repeated = GENERATE(true, false);
+  CAPTURE(is_repeated);
+  const pid_t self = getpid();
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    obey_sigterm();
+    is_interrupted = 0;
+    std::signal(SIGINT, [](int) { is_interrupted = 1; });
+    (void)processes.start(shell("agent", "exec sleep 1000"));
+    kill(self, SIGINT);
+    wait_for([] { return is_asked_to_end != 0; });
+    if (is_interrupted != 0) return 91;
+    kill(self, is_repeated ? SIGINT : SIGTERM);
+    if (is_repeated) {
+      wait_for([] { return is_interrupted != 0; });
+    } else {
+      is_asked_to_end = 0;
+      wait_for([] { return is_asked_to_end != 0; });
+      if (is_interrupted != 0) return 92;
+    }
+    processes.abandon();
+    return processes.terminate(5s).empty() ? 3 : 93;
+  });
+  CHECK(code == 3);
+  CHECK(f.lost.empty());
+  CHECK(f.group.running() == 0);
+}
+
+TEST_CASE("a director may ask processes to end one after the other, and waits for none") {
+  Fixture f;
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    ChildSpec spec = shell("agent", "trap 'exit 0' TERM; echo ready; while :; do sleep 0.01; done");
+    spec.restart = true;
+    (void)processes.start(spec);
+    wait_for([&] { return !processes.last_lines("agent").empty(); });
+    if (!processes.ask_to_end("agent")) return 91;
+    std::vector<ChildEvent> events;
+    wait_for([&] {
+      events = processes.poll(100ms);
+      return !events.empty();
+    });
+    if (events[0].reason != "exit code 0" || events[0].will_restart) return 92;
+    return processes.ask_to_end("agent") ? 93 : 0;
+  });
+  CHECK(code == 0);
 }
 
 TEST_CASE("a director that hangs after it has ended its processes is killed") {
