@@ -86,6 +86,13 @@ Json audit_json(const AuditTotals& audit) {
   return json;
 }
 
+Json ending_json(const EndingRecord& ending) {
+  return {{"cause", ending.cause},
+          {"duration_s", rounded(ending.duration_s)},
+          {"contacts", ending.contacts},
+          {"problem", ending.problem.empty() ? Json(nullptr) : Json(ending.problem)}};
+}
+
 /// Adds when each violation was detected, which the audit itself does not know.
 void add_times(Json& violations, const std::vector<Violation>& first, Time zero) {
   for (std::size_t i = 0; i < first.size(); ++i)
@@ -115,6 +122,8 @@ std::string reason_of(const Report& report) {
   if (report.verdict() == AuditVerdict::kNotJudged && !report.director_deaths.empty())
     return fmt::format("not judged: the process that observed the run died ({}) and was replaced",
                        fmt::join(report.director_deaths, ", "));
+  if (report.verdict() == AuditVerdict::kNotJudged && report.ending && !report.ending->problem.empty())
+    return "not judged: " + report.ending->problem;
   if (report.verdict() == AuditVerdict::kNotJudged) return "not judged: " + shortfall(*report.audit);
   return report.failure_reason();
 }
@@ -159,6 +168,14 @@ std::string unusual_text(const Report& report) {
   return text.empty() ? text : "refused: " + text + "\n";
 }
 
+/// How the run ended, in one line.
+std::string ending_text(const EndingRecord& ending) {
+  const std::string rest = ending.problem.empty()
+                               ? fmt::format("all robots rested after {:.2f} s", ending.duration_s)
+                               : fmt::format("{} after {:.2f} s", ending.problem, ending.duration_s);
+  return fmt::format("end: {}; {}, with {} contacts meanwhile\n", ending.cause, rest, ending.contacts);
+}
+
 /// One line for each epoch after the first one.
 std::string epochs_text(const std::vector<EpochRecord>& epochs) {
   std::string text;
@@ -170,6 +187,8 @@ std::string epochs_text(const std::vector<EpochRecord>& epochs) {
 }
 
 }  // namespace
+
+const char* verb_of_end(const std::string& reason) { return reason == "exit code 0" ? "ended" : "died"; }
 
 std::uint64_t Report::unexcused_contacts() const {
   const std::uint64_t excluded =
@@ -185,6 +204,7 @@ std::uint64_t Report::unexcused_crashes() const {
 AuditVerdict Report::verdict() const {
   if (!failure_reason().empty()) return AuditVerdict::kFailed;
   if (!director_deaths.empty()) return AuditVerdict::kNotJudged;
+  if (ending && !ending->problem.empty()) return AuditVerdict::kNotJudged;
   return audit ? audit->verdict() : AuditVerdict::kPassed;
 }
 
@@ -256,6 +276,7 @@ std::string to_json(const Report& r) {
                               {"restarted", death.restarted}});
   }
   json["director_deaths"] = r.director_deaths;
+  json["ending"] = r.ending ? ending_json(*r.ending) : Json(nullptr);
   json["epochs"] = Json::array();
   for (const EpochRecord& epoch : r.epochs) {
     json["epochs"].push_back({{"coordinator", epoch.coordinator},
@@ -337,9 +358,10 @@ std::string summary(const Report& r) {
     text += fmt::format("{} was refused because it has different rules: {}\n", process,
                         differences.empty() ? "it did not say which" : describe(differences));
   }
+  if (r.ending) text += ending_text(*r.ending);
   for (const Death& death : r.deaths) {
-    text += fmt::format("{} died at {:.2f} s: {}{}\n", death.process, death.at_s, death.reason,
-                        death.restarted ? ", restarted" : "");
+    text += fmt::format("{} {} at {:.2f} s: {}{}\n", death.process, verb_of_end(death.reason), death.at_s,
+                        death.reason, death.restarted ? ", restarted" : "");
   }
   text += unusual_text(r);
   text += epochs_text(r.epochs);

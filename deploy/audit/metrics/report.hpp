@@ -27,6 +27,9 @@ struct Death {
   bool restarted = false;
 };
 
+/// "ended" for the reason of a process that was asked to end, otherwise "died".
+const char* verb_of_end(const std::string& reason);
+
 /// An epoch that a coordinator began.
 struct EpochRecord {
   std::string coordinator;  ///< for example "coordinator 1"
@@ -35,6 +38,14 @@ struct EpochRecord {
   /// Seconds since the first grant; may be negative; nullopt: nothing was granted.
   std::optional<double> at_s;
   std::string reason;
+};
+
+/// How a run of processes ended.
+struct EndingRecord {
+  std::string cause;           ///< for example "all robots arrived" or "interrupted"
+  double duration_s = 0;       ///< time until all robots rested and the processes that drive them had ended
+  std::uint64_t contacts = 0;  ///< number of contacts in this time
+  std::string problem;         ///< why it is not known that all robots came to rest; empty: they did
 };
 
 /// The outcome of a run.
@@ -87,7 +98,8 @@ struct Report {
   std::vector<Death> deaths;
   /// Why each process that directed and observed the run died. The run before such a death is not judged.
   std::vector<std::string> director_deaths;
-  std::vector<EpochRecord> epochs;  ///< in the order of their first heartbeats
+  std::optional<EndingRecord> ending;  ///< nullopt: not a run of processes
+  std::vector<EpochRecord> epochs;     ///< in the order of their first heartbeats
   /// Processes with different rules, and the differences; empty if these are unknown.
   std::map<std::string, std::vector<RuleDifference>> mismatches;
   /// Numbers of dropped messages, by process and reason; only non-zero ones.

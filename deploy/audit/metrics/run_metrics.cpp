@@ -165,6 +165,7 @@ void RunMetrics::place(RobotRecord& robot, const Vec2& position_m, double speed_
   floor_.place(static_cast<std::size_t>(&robot - robots_.data()), {at, position_m, speed_mps});
   robot.position_m = position_m;
   robot.speed_mps = speed_mps;
+  robot.seen_at = at;
   robot.is_at_rest = speed_mps < limits.speed_mps;
   const bool is_settled = distance_to_go_m(robot) <= limits.distance_m && robot.is_at_rest;
   if (!is_settled)

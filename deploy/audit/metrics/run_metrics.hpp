@@ -16,6 +16,7 @@
 #include "deploy/audit/auditor.hpp"
 #include "deploy/audit/metrics/floor_recorder.hpp"
 #include "deploy/audit/metrics/report.hpp"
+#include "deploy/audit/metrics/robot_sighting.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
 #include "idl/order.hpp"
@@ -101,6 +102,8 @@ class RunMetrics {
   /// Number of invalid or outdated messages that were ignored here.
   std::uint64_t dropped_messages() const { return dropped_messages_; }
 
+  /// The last sighting of each robot that has been seen.
+  std::vector<RobotSighting> sightings() const;
   std::vector<RobotProgress> progress() const;
   /// The report, except for floor_trace() and what only the caller knows: program, seed, wall-clock times,
   /// and why the run ended.
@@ -113,6 +116,7 @@ class RunMetrics {
     const RobotSpec* spec = nullptr;
     Vec2 position_m{0, 0};
     double speed_mps = 0;
+    std::optional<Time> seen_at;  ///< when it was there; nullopt: it has not been seen
     bool is_at_rest = true;
     std::optional<Time> settled_since;  ///< time since which it has been nearly at rest at the last goal
     std::vector<msg::AgentStatus> incarnations;  ///< the last status of each incarnation of its agent, sorted

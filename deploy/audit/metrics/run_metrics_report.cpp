@@ -29,6 +29,14 @@ std::uint64_t sum(const std::vector<msg::AgentStatus>& incarnations,
 
 }  // namespace
 
+std::vector<RobotSighting> RunMetrics::sightings() const {
+  std::vector<RobotSighting> result;
+  for (const RobotRecord& robot : robots_) {
+    if (robot.seen_at) result.push_back({robot.spec->id, *robot.seen_at, robot.position_m, robot.speed_mps});
+  }
+  return result;
+}
+
 std::vector<RobotProgress> RunMetrics::progress() const {
   std::vector<RobotProgress> rows;
   for (const RobotRecord& robot : robots_) {

@@ -9,6 +9,7 @@
 
 #include "common/keys/key_folder.hpp"
 #include "common/log/log.hpp"
+#include "common/motion/time_to_rest.hpp"
 #include "common/process/stop_signals.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/senders.hpp"
@@ -32,12 +33,6 @@ constexpr Duration kSettlingTime = 500ms;   // time after all arrivals, for the 
 constexpr Duration kStuckTimeout = 2s;      // minimum time since the last death
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
-
-/// Time in which robots that get no more commands come to rest: a second for the longest acceleration of a
-/// version and the latency of bases, and then the braking.
-Duration time_to_rest(const MotionLimits& limits) {
-  return 1s + from_seconds(limits.speed_mps / limits.deceleration_mps2);
-}
 
 /// Settings of a bus that receives everything, for audit and recording.
 DdsSettings with_keep_all(DdsSettings dds) {
@@ -83,15 +78,21 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
 }
 
 Report Launcher::run() {
-  const StopSignals stop_signals([this] {
-    is_interrupted_ = true;
-    bus_.stop();
-  });
+  const StopSignals stop_signals([this] { is_interrupted_ = true; },
+                                 [this] {
+                                   gives_up_ = true;
+                                   bus_.stop();
+                                 });
   began_ = bus_.now();
   try {
     work();
   } catch (const std::exception& error) {
     abort_reason_ = error.what();
+  }
+  try {
+    bring_to_rest();
+  } catch (const std::exception& error) {
+    if (abort_reason_.empty()) abort_reason_ = error.what();
   }
   if (options_.monitor_port) end_monitored_run();
   Report report = metrics_.report();
@@ -107,6 +108,7 @@ Report Launcher::run() {
   if (ready_at_) report.startup_s = to_seconds(*ready_at_ - began_);
   report.processes = children_.resource_use();
   report.director_deaths = before_.deaths;
+  report.ending = ending_;
   report.recording_failure = recording_failure_;
   return report;
 }
@@ -287,15 +289,18 @@ void Launcher::handle(const ChildEvent& event) {
   }
   const Time now = bus_.now();
   metrics_.on_death(event.name, event.reason, now, event.will_restart);
-  if (recording_) recording_->add_event(now, "death", fmt::format("{} died: {}", event.name, event.reason));
-  print(fmt::format("{} (pid {}) died: {}{}", event.name, event.pid, event.reason,
+  if (recording_)
+    recording_->add_event(now, "death",
+                          fmt::format("{} {}: {}", event.name, verb_of_end(event.reason), event.reason));
+  print(fmt::format("{} (pid {}) {}: {}{}", event.name, event.pid, verb_of_end(event.reason), event.reason,
                     event.will_restart ? "; it will be restarted" : ""),
         LogLevel::kWarning);
   print_last_lines(event.name);
   if (event.will_restart) return;
   dead_.insert(event.name);
   last_death_ = now;
-  if (!is_ready_) abort_reason_ = fmt::format("{} died during startup: {}", event.name, event.reason);
+  if (!is_ready_ && abort_reason_.empty())
+    abort_reason_ = fmt::format("{} died during startup: {}", event.name, event.reason);
 }
 
 void Launcher::print_last_lines(const std::string& process) {

@@ -90,6 +90,15 @@ class Launcher {
   void end_monitored_run();
   /// Runs until the run is over.
   void work();
+  /// Brings all robots to rest, ends the processes that move them, and judges meanwhile. Ends all processes
+  /// at once if the user gives up.
+  void bring_to_rest();
+  /// Why the run is over.
+  std::string end_cause() const;
+  /// Asks all processes that run a program to end, and returns the names of those that were running.
+  std::set<std::string> ask_to_end(const std::string& program);
+  /// The processes that run a program and have not died.
+  std::set<std::string> running(const std::string& program) const;
   void print_last_lines(const std::string& process);
   /// Whether the run is over; sets abort_reason_ if the run must be aborted.
   bool check_end();
@@ -128,6 +137,7 @@ class Launcher {
   std::string recording_failure_;
   ProgressDisplay display_;
   std::atomic<bool> is_interrupted_{false};
+  std::atomic<bool> gives_up_{false};  ///< the user does not wait until robots rest
   bool is_ready_ = false;
   std::optional<Time> ready_at_;
   Time began_{};
@@ -137,6 +147,7 @@ class Launcher {
   std::optional<Time> arrived_since_;
   std::set<std::string> dead_;  ///< processes that died and will not be restarted
   std::string abort_reason_;
+  std::optional<EndingRecord> ending_;
 };
 
 }  // namespace sidestep

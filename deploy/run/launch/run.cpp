@@ -13,6 +13,7 @@
 #include "common/file/temporary_folder.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/free_domain.hpp"
+#include "common/motion/time_to_rest.hpp"
 #include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
 #include "common/terminal/terminal.hpp"
@@ -123,6 +124,8 @@ int run(const RunOptions& given) {
   const auto began = std::chrono::steady_clock::now();
   const auto former_report = written_at(report_path);
   DirectorWork work;
+  // Robots come to rest first; see Ending.
+  work.shutdown_timeout += std::chrono::ceil<std::chrono::milliseconds>(2 * time_to_rest(scenario.limits));
   work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
     return run_and_report_errors("sidestep run", [&] {
       if (!deaths.empty() && !options.recording_file.empty())

@@ -75,6 +75,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on in a stable order")
                                          "robot_time_s",
                                          "deaths",
                                          "director_deaths",
+                                         "ending",
                                          "epochs",
                                          "mismatches",
                                          "counters",
@@ -279,6 +280,30 @@ TEST_CASE("a run neither passes nor fails if its audit covered too little") {
   CHECK(report.verdict() == AuditVerdict::kFailed);
   CHECK(parse_json(to_json(report))["failure"] == "1 of 2 arrived");
   CHECK_THAT(summary(report), EndsWith("\nfailed: 1 of 2 arrived\n"));
+}
+
+TEST_CASE("a report states how the run ended, and is not judged if robots may still move") {
+  Report report = example();
+  report.arrived = 2;
+  report.not_arrived.clear();
+  REQUIRE(report.verdict() == AuditVerdict::kPassed);
+  report.ending = {"all robots arrived", 0.4321, 0, ""};
+  CHECK(report.verdict() == AuditVerdict::kPassed);
+  CHECK(json_text(parse_ordered_json(to_json(report))["ending"]) ==
+        R"({"cause":"all robots arrived","duration_s":0.4321,"contacts":0,"problem":null})");
+  CHECK_THAT(summary(report),
+             ContainsSubstring("end: all robots arrived; all robots rested after 0.43 s, with "
+                               "0 contacts meanwhile\n"));
+  report.ending = {"interrupted", 5, 1, "robot 3 still moves at 0.40 m/s"};
+  CHECK(report.verdict() == AuditVerdict::kNotJudged);
+  CHECK_THAT(summary(report), EndsWith("not judged: robot 3 still moves at 0.40 m/s\n"));
+  const auto json = parse_ordered_json(to_json(report));
+  CHECK(json["failure"] == "not judged: robot 3 still moves at 0.40 m/s");
+  CHECK(json["ending"]["contacts"] == 1);
+  report.abort_reason = "interrupted";
+  CHECK(report.verdict() == AuditVerdict::kFailed);
+  CHECK_THAT(summary(report),
+             ContainsSubstring("end: interrupted; robot 3 still moves at 0.40 m/s after 5.00 s"));
 }
 
 TEST_CASE("a report states the audit's coverage and reference and the causes of excused contacts") {

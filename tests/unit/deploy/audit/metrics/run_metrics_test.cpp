@@ -585,4 +585,23 @@ TEST_CASE("the metrics record the robots' paths by ground truth, or by vision wh
   CHECK(seen.floor_trace().robots[1].path[0].position_m == Vec2(0.25, 0));
 }
 
+TEST_CASE("sightings are the latest places of robots that were seen, by ground truth if there is any") {
+  RunMetrics metrics(kTwo);
+  CHECK(metrics.sightings().empty());
+  msg::WorldState world;
+  world.valid_at_ns(to_ns(after(1)));
+  world.robots().emplace_back().robot(7);
+  world.robots()[0].x_m(0.25);
+  metrics.on_world_state(world);
+  REQUIRE(metrics.sightings().size() == 1);
+  CHECK(metrics.sightings()[0].robot == 7);
+  CHECK(metrics.sightings()[0].position_m == Vec2(0.25, 0));
+  CHECK(metrics.sightings()[0].at == after(1));
+  metrics.on_truth(truth(1, 2, {body(3, 0.5, 0, 1.5), body(7, 0.75, 1)}));
+  REQUIRE(metrics.sightings().size() == 2);
+  CHECK(metrics.sightings()[0].speed_mps == Approx(1.5));
+  CHECK(metrics.sightings()[1].position_m == Vec2(0.75, 1));
+  CHECK(metrics.sightings()[1].at == after(2));
+}
+
 }  // namespace sidestep::run_metrics_test
