@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// How runs of real processes end while robots drive: robots rest before the processes that move and see them
+// end, and no robot touches anything meanwhile, by ground truth.
+#include <csignal>
+#include <map>
+#include <set>
+
+#include "common/json/json_text.hpp"
+#include "tests/catch.hpp"
+#include "tests/faults/external_simulator_run.hpp"
+
+namespace sidestep::run_end_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kDriving_mps = 0.8, kAtRest_mps = 0.03;
+
+/// Records how fast the fastest robot was when each process of a run ended.
+class ProcessEnds {
+ public:
+  explicit ProcessEnds(const LaunchedRun& run) : run_(run), pids_(run.children()) {}
+
+  /// Must be called often. Returns whether a process has ended.
+  bool observe() {
+    for (const auto& [name, pid] : pids_) {
+      if (!speeds_mps_.count(name) && !is_running(pid)) speeds_mps_[name] = run_.max_speed_mps();
+    }
+    return !speeds_mps_.empty();
+  }
+  bool has_ended(const std::string& process) const { return speeds_mps_.count(process) > 0; }
+  /// The processes, other than those that were killed, that ended while a robot drove.
+  std::set<std::string> early(const std::set<std::string>& killed = {}) const {
+    std::set<std::string> result;
+    for (const auto& [name, speed_mps] : speeds_mps_) {
+      if (speed_mps > kAtRest_mps && !killed.count(name)) result.insert(name);
+    }
+    return result;
+  }
+
+ private:
+  const LaunchedRun& run_;
+  std::map<std::string, pid_t> pids_;
+  std::map<std::string, double> speeds_mps_;
+};
+
+/// Observes a run to its end, and for a second longer, because bases without commands may coast.
+void observe_to_end(LaunchedRun& run, ProcessEnds& ends) {
+  CHECK(run.wait_until([&] {
+    (void)ends.observe();
+    return !is_running(run.pid());
+  }));
+  const Time until = run.bus().now() + 1s;
+  while (run.bus().now() < until) {
+    run.bus().run_until(run.bus().now() + 2ms);
+    (void)ends.observe();
+  }
+}
+
+void check_contacts(const LaunchedRun& run) {
+  CHECK(run.truth().contacts() == 0);
+  CHECK(run.max_speed_mps() < kAtRest_mps);
+  require_no_violations(run.report());
+}
+
+nlohmann::json ending_of(const LaunchedRun& run) { return run.report()["ending"]; }
+
+}  // namespace
+
+TEST_CASE("at the time limit and at Ctrl-C, all robots rest before any process of the run ends") {
+  const std::string cause = GENERATE("limit", "SIGINT", "SIGTERM");
+  CAPTURE(cause);
+  LaunchedRun run(shuttles(20, ""),
+                  cause == "limit" ? std::vector<std::string>{"--seconds", "3"} : std::vector<std::string>{});
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  ProcessEnds ends(run);
+  if (cause != "limit") REQUIRE(kill(run.pid(), cause == "SIGINT" ? SIGINT : SIGTERM) == 0);
+  observe_to_end(run, ends);
+  INFO(run.output());
+  CHECK(ends.early().empty());
+  check_contacts(run);
+  const auto ending = ending_of(run);
+  INFO(json_text(ending));
+  CHECK(ending["cause"] == (cause == "limit" ? "time limit of 3 s" : "interrupted"));
+  CHECK(ending["contacts"] == 0);
+  CHECK(ending["problem"].is_null());
+  CHECK(ending["duration_s"] > 0.2);
+  CHECK(ending["duration_s"] < 4.5);
+  CHECK(run.report()["deaths"].empty());
+  CHECK_FALSE(run.printed("was killed"));
+}
+
+TEST_CASE("at the time limit and at Ctrl-C, driven bases rest before any process of the run ends",
+          "[both-cores]") {
+  const std::string cause = GENERATE("limit", "SIGINT", "SIGTERM");
+  CAPTURE(cause);
+  ExternalSimulatorRun floor(
+      shipped_scenario("league/crossing"), {},
+      cause == "limit" ? std::vector<std::string>{"--seconds", "3"} : std::vector<std::string>{});
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  ProcessEnds ends(run);
+  if (cause != "limit") REQUIRE(kill(run.pid(), cause == "SIGINT" ? SIGINT : SIGTERM) == 0);
+  observe_to_end(run, ends);
+  INFO(run.output());
+  CHECK(ends.early().empty());
+  check_contacts(run);
+  const auto ending = ending_of(run);
+  INFO(json_text(ending));
+  CHECK(ending["problem"].is_null());
+  CHECK(ending["contacts"] == 0);
+  CHECK(run.report()["deaths"].empty());
+}
+
+TEST_CASE("without ground truth, vision judges that driven bases have come to rest", "[both-cores]") {
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"), {}, {"--seconds", "3"}, false);
+  LaunchedRun& run = floor.run();
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  CHECK(ended == "exit code 1");
+  CHECK(run.printed("end: time limit of 3 s; all robots rested after "));
+  CHECK(ending_of(run)["problem"].is_null());
+  require_no_violations(run.report());
+}
+
+TEST_CASE("SIGTERM to an agent stops its robot, and the agent ends with exit code 0 when the robot rests") {
+  LaunchedRun run(shuttles(20, ""));
+  REQUIRE(run.wait_until([&] { return run.speed_mps(2) > kDriving_mps; }));
+  const pid_t agent = run.pid_of("agent 2");
+  REQUIRE(kill(agent, SIGTERM) == 0);
+  REQUIRE(run.wait_until([&] { return !is_running(agent); }));
+  CHECK(run.speed_mps(2) < kAtRest_mps);
+  const Time until = run.bus().now() + 2s;
+  CHECK(run.wait_until([&] {
+    CHECK(run.speed_mps(2) < kAtRest_mps);
+    return run.bus().now() > until;
+  }));
+  REQUIRE(kill(run.pid(), SIGINT) == 0);
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  CHECK(run.printed("agent 2 (pid " + std::to_string(agent) + ") ended: exit code 0"));
+  check_contacts(run);
+}
+
+TEST_CASE("SIGTERM to the simulator brings its robots to rest before it ends with exit code 0") {
+  LaunchedRun run(shuttles(20, ""));
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  const pid_t simulator = run.pid_of("simulator");
+  REQUIRE(kill(simulator, SIGTERM) == 0);
+  REQUIRE(run.wait_until([&] { return !is_running(simulator); }));
+  CHECK(run.max_speed_mps() < kAtRest_mps);
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  CHECK(run.printed("simulator (pid " + std::to_string(simulator) + ") ended: exit code 0"));
+  CHECK(run.truth().contacts() == 0);
+}
+
+TEST_CASE("SIGTERM to the process that drives bases brings them to rest before it ends with exit code 0",
+          "[both-cores]") {
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"));
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  const pid_t robots = run.pid_of("robots");
+  REQUIRE(kill(robots, SIGTERM) == 0);
+  REQUIRE(run.wait_until([&] { return !is_running(robots); }));
+  CHECK(run.max_speed_mps() < kAtRest_mps);
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  CHECK(run.printed("robots (pid " + std::to_string(robots) + ") ended: exit code 0"));
+  check_contacts(run);
+}
+
+TEST_CASE("if the coordinator or vision ends or is killed, robots rest and then the run ends") {
+  const auto [process, signal] = GENERATE(table<std::string, int>(
+      {{"coordinator", SIGTERM}, {"coordinator", SIGKILL}, {"vision", SIGTERM}, {"vision", SIGKILL}}));
+  CAPTURE(process, signal);
+  LaunchedRun run(shuttles(20, ""));
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  ProcessEnds ends(run);
+  REQUIRE(kill(run.pid_of(process), signal) == 0);
+  observe_to_end(run, ends);
+  INFO(run.output());
+  CHECK(ends.early({process}).empty());
+  check_contacts(run);
+  CHECK(ending_of(run)["problem"].is_null());
+}
+
+TEST_CASE("after SIGKILL of the process that drives bases, the run is judged until they rest",
+          "[both-cores]") {
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"));
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  ProcessEnds ends(run);
+  REQUIRE(kill(run.pid_of("robots"), SIGKILL) == 0);
+  observe_to_end(run, ends);
+  INFO(run.output());
+  CHECK(ends.early({"robots"}).empty());
+  CHECK(run.max_speed_mps() < kAtRest_mps);
+  // Nothing but the base can prevent a contact; but the report has each of them.
+  CHECK(run.report()["contacts"] == run.truth().contacts());
+  CHECK(ending_of(run)["cause"] == "robots died");
+  CHECK(ending_of(run)["problem"].is_null());
+}
+
+TEST_CASE("a second Ctrl-C ends a run at once and names the robots that still move", "[both-cores]") {
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"));
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  const pid_t robots = run.pid_of("robots");
+  ProcessEnds ends(run);
+  REQUIRE(kill(run.pid(), SIGINT) == 0);
+  REQUIRE(run.wait_until([&] { return run.printed("interrupted: all robots come to rest"); }));
+  REQUIRE(kill(run.pid(), SIGINT) == 0);
+  CHECK(run.wait_until([&] { return ends.observe(); }));
+  CHECK_FALSE(ends.early().empty());
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  CHECK(run.printed("ends at once: robot"));
+  CHECK_THAT(json_text(ending_of(run)["problem"]), ContainsSubstring("ended by a second Ctrl-C: robot"));
+  CHECK_FALSE(is_running(run.pid_of("vision")));
+  // The process that drives bases still brings them to rest, as if it had been asked alone.
+  const Time deadline = run.bus().now() + 10s;
+  while (is_running(robots) && run.bus().now() < deadline) run.bus().run_until(run.bus().now() + 2ms);
+  CHECK_FALSE(is_running(robots));
+  CHECK(run.max_speed_mps() < kAtRest_mps);
+  CHECK(run.truth().contacts() == 0);
+}
+
+}  // namespace sidestep::run_end_test
