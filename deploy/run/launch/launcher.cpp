@@ -263,7 +263,8 @@ void Launcher::start_due_agents() {
   const RobotId robot = scenario_.robots[agents_started_++].id;
   std::vector<std::string> arguments{"--robot", std::to_string(robot)};
   if (!options_.planner.empty()) arguments.insert(arguments.end(), {"--planner", options_.planner});
-  start(agent_process(robot), "sidestep-agent", scenario_.restart.agents, arguments);
+  start(agent_process(robot), "sidestep-agent", scenario_.restart.agents, arguments,
+        time_to_rest(scenario_.limits));
 }
 
 void Launcher::send_revoked_keys() try {

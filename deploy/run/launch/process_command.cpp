@@ -136,7 +136,9 @@ ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std
   if (process.insecure) append(options, {"--insecure"});
   append(options, process.arguments);
   ChildSpec child{process.name, {}, process.restart};
-  child.rest_time = std::chrono::ceil<std::chrono::milliseconds>(process.rest_time);
+  // An agent's robot comes to rest by itself, so other processes do not wait for the agent.
+  if (process.program != "sidestep-agent")
+    child.rest_time = std::chrono::ceil<std::chrono::milliseconds>(process.rest_time);
   if (is_remote) {
     const std::vector<SentFile> files = sent_files(process);
     for (const SentFile& file : files) child.input += file_input(file.name, file.content);

@@ -21,7 +21,8 @@ struct ProcessSpec {
   std::vector<std::string> peers{};  ///< see DdsSettings::peers
   std::string keys{};                ///< see DdsSettings::keys; a folder on this machine
   bool insecure = false;             ///< see DdsSettings::insecure
-  Duration rest_time{0};             ///< see ChildSpec::rest_time
+  /// Maximum time for its robots to come to rest when it is asked to end; see ChildSpec::rest_time.
+  Duration rest_time{0};
 };
 
 /// The child process that runs the program on a host: the program itself, `ip netns exec` for the namespace

@@ -123,6 +123,22 @@ TEST_CASE("agents run at low priority except on hosts that are robots' own compu
   }
 }
 
+TEST_CASE(
+    "robots' time to rest delays how soon a remote process is killed, but only drivers are waited for "
+    "first") {
+  const Fixture fixture;
+  ProcessSpec process = agent_spec(fixture);
+  process.rest_time = std::chrono::milliseconds(1500);
+  const auto local = [&] { return child_spec(process, host_of(HostTransport::kLocal, ""), "").rest_time; };
+  CHECK(local() == std::chrono::milliseconds(0));
+  HostSpec host = host_of(HostTransport::kSsh, "robot@far");
+  host.programs = fixture.folder.string();
+  // The remote script gets three seconds more.
+  CHECK_THAT(child_spec(process, host, "").argv.back(), ContainsSubstring("'4.5'"));
+  process.program = "sidestep-robot";
+  CHECK(local() == std::chrono::milliseconds(1500));
+}
+
 TEST_CASE("over ssh the scenario is copied, and the process ends when the launcher asks it to") {
   const Fixture fixture;
   HostSpec host = host_of(HostTransport::kSsh, "robot@far");
