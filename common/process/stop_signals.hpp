@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <signal.h>
 
@@ -11,6 +12,10 @@ namespace sidestep {
 /// one object per process at a time.
 class StopSignals {
  public:
+  /// A SIGINT sooner than this after the first signal is the same request: some programs send a signal both
+  /// to a process and to its group.
+  static constexpr std::chrono::milliseconds kSameRequest{200};
+
   /// `give_up`, if set, is called instead of `stop` on a SIGINT that follows another signal: the user does
   /// not want to wait. SIGTERM never gives up, because supervisors repeat it.
   explicit StopSignals(std::function<void()> stop, std::function<void()> give_up = {});

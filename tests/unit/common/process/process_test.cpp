@@ -241,6 +241,25 @@ TEST_CASE("a second Ctrl-C ends a process at once, and says what it has not fini
   CHECK_THAT(outcome.err, ContainsSubstring("gives up: robot 3 still moves"));
 }
 
+TEST_CASE("a SIGINT that arrives twice at once is one request") {
+  Program program = test_program();
+  int asked = 0;
+  program.start = [&](DdsBus& bus, const Scenario&, Incarnation) {
+    bus.at(bus.now(), [] {
+      kill(getpid(), SIGINT);
+      kill(getpid(), SIGINT);
+    });
+    RunningNodes running;
+    running.finish = [&asked] { return ++asked == 3; };
+    running.unfinished = [] { return "robot 3 still moves"; };
+    return running;
+  };
+  const Outcome outcome = run(program, good_arguments());
+  CAPTURE(outcome.err);
+  CHECK(asked == 3);
+  CHECK(outcome.err.find("gives up") == std::string::npos);
+}
+
 TEST_CASE("a later run of a process has a higher incarnation, unless other processes would refuse it") {
   const Time now = time_from_ns(1'000'000'000'000'000);
   const auto reading = static_cast<Incarnation>(to_ns(now)), minute = Incarnation{60'000'000'000};
