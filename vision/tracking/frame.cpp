@@ -50,8 +50,10 @@ void Frame::clear(const msg::DetectionFrame& message) {
   rejected_ = 0;
 }
 
-void Frame::assign(const msg::DetectionFrame& message, Time now, Duration max_lead) {
+void Frame::assign(const msg::DetectionFrame& message, Time now, Duration max_lead,
+                   Duration date_uncertainty) {
   clear(message);
+  date_uncertainty_ = date_uncertainty;
   if (!is_timely(message.captured_at_ns(), now, max_lead))
     problem_ = FrameProblem::kTime;
   else if (message.ball_count() > msg::MAX_DETECTED_BALLS || message.obstacle_count() > msg::MAX_OBSTACLES ||

@@ -43,6 +43,8 @@ class Frame {
  public:
   std::uint32_t camera() const { return camera_; }
   Time captured_at() const { return captured_at_; }
+  /// Maximum error of captured_at().
+  Duration date_uncertainty() const { return date_uncertainty_; }
   /// False if the capture time, a count or the obstacles' completeness was invalid; the frame then contains
   /// no detections.
   bool is_usable() const { return problem_ == FrameProblem::kNone; }
@@ -58,13 +60,15 @@ class Frame {
 
   /// Copies the valid detections: timely frames, coordinates up to kMaxCoordinate_m, confidences in 0..1,
   /// robot numbers below kMaxRobots, obstacle radii up to 10 m. Allocates nothing.
-  void assign(const msg::DetectionFrame& message, Time now, Duration max_lead = kMaxFrameLead);
+  void assign(const msg::DetectionFrame& message, Time now, Duration max_lead = kMaxFrameLead,
+              Duration date_uncertainty = Duration{0});
 
  private:
   void clear(const msg::DetectionFrame& message);
 
   std::uint32_t camera_ = 0;
   Time captured_at_{};
+  Duration date_uncertainty_{0};
   FrameProblem problem_ = FrameProblem::kMalformed;
   std::size_t robot_count_ = 0;
   std::size_t ball_count_ = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/track.hpp"
 
+#include <algorithm>
 #include <tuple>
 
 namespace sidestep {
@@ -9,6 +10,11 @@ namespace {
 using Angle = ConstantVelocityFilter<1>::Vector;
 
 double squared(double x) { return x * x; }
+
+/// Variance by which a wrong date displaces an observation of something that moves at this speed.
+double date_variance(double speed, Duration date_uncertainty) {
+  return squared(speed * to_seconds(date_uncertainty));
+}
 
 auto order_key(const Observation& o) {
   return std::make_tuple(o.captured_at, o.camera, o.position_m.x(), o.position_m.y(), o.heading_rad);
@@ -31,8 +37,11 @@ void predict(PoseFilter& filter, Duration dt, const TrackModel& model) {
 bool correct(PoseFilter& filter, const Observation& observation, const TrackModel& model) {
   const Vec2 offset = observation.position_m - filter.position.position();
   const Angle turn(wrapped_rad(observation.heading_rad - filter.heading.position()(0)));
-  const double position_variance = squared(model.position_noise_m);
-  const double heading_variance = squared(model.heading_noise_rad);
+  const Duration date_uncertainty = observation.date_uncertainty;
+  const double position_variance =
+      squared(model.position_noise_m) + date_variance(filter.position.velocity().norm(), date_uncertainty);
+  const double heading_variance =
+      squared(model.heading_noise_rad) + date_variance(filter.heading.velocity()(0), date_uncertainty);
   const double gate = squared(model.gate_sigma);
   if (filter.position.squared_distance(offset, position_variance) > gate ||
       filter.heading.squared_distance(turn, heading_variance) > gate) {
@@ -51,6 +60,7 @@ void record_observation(TrackState& state, const Observation& observation) {
     return;
   }
   ++state.last_count;
+  state.last.date_uncertainty = std::max(state.last.date_uncertainty, observation.date_uncertainty);
   state.last.position_m += (observation.position_m - state.last.position_m) / state.last_count;
   const double turn = wrapped_rad(observation.heading_rad - state.last.heading_rad);
   state.last.heading_rad = wrapped_rad(state.last.heading_rad + turn / state.last_count);
@@ -141,11 +151,14 @@ std::optional<Estimate> estimate_at(const TrackState& state, Time t, const Track
   if (!state.is_confirmed || gap > model.drop_after) return std::nullopt;
   PoseFilter filter = state.filter;
   predict(filter, gap, model);
+  // Errors of consecutive dates have the same cause, so the filter does not average them out.
+  const double date_variance_m2 =
+      date_variance(filter.position.velocity().norm(), state.last.date_uncertainty);
   return Estimate{filter.position.position(),
                   filter.position.velocity(),
                   wrapped_rad(filter.heading.position()(0)),
                   filter.heading.velocity()(0),
-                  filter.position.covariance()(0, 0),
+                  filter.position.covariance()(0, 0) + date_variance_m2,
                   filter.position.covariance()(1, 1)};
 }
 

@@ -38,6 +38,7 @@ struct Observation {
   std::uint32_t camera = 0;
   Vec2 position_m{0, 0};
   double heading_rad = 0;
+  Duration date_uncertainty{0};  ///< maximum error of captured_at
 };
 
 struct PoseFilter {

@@ -113,11 +113,13 @@ void Tracker::update(const Frame& frame) {
       ++unknown_;
       continue;
     }
-    const Observation observation{frame.captured_at(), frame.camera(), robot.position_m, robot.heading_rad};
+    const Observation observation{frame.captured_at(), frame.camera(), robot.position_m, robot.heading_rad,
+                                  frame.date_uncertainty()};
     is_new |= robots_[index].add(observation, settings_.robot);
   }
   for (const Vec2& position_m : frame.balls()) {
-    is_new |= ball_.add({frame.captured_at(), frame.camera(), position_m, 0}, settings_.ball);
+    is_new |= ball_.add({frame.captured_at(), frame.camera(), position_m, 0, frame.date_uncertainty()},
+                        settings_.ball);
   }
   obstacles_.update(frame);
   frames_ += is_new ? 1 : 0;

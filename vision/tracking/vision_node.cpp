@@ -40,13 +40,13 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
   bus_.at(next_, [this] { publish(); });
 }
 
-void VisionNode::add_frame(const msg::DetectionFrame& message) {
+void VisionNode::add_frame(const msg::DetectionFrame& message, Duration date_uncertainty) {
   if (!watch_.has(message.camera())) {
     ++unknown_cameras_;
     event_logger_.on_unknown_camera(message.camera());
     return;
   }
-  frame_.assign(message, bus_.now(), max_lead_);
+  frame_.assign(message, bus_.now(), max_lead_, date_uncertainty);
   event_logger_.on_frame(frame_, bus_.now());
   tracker_.update(frame_);
   if (frame_.is_usable()) watch_.on_frame(frame_.camera(), frame_.captured_at());

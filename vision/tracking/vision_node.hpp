@@ -37,8 +37,9 @@ class VisionNode {
 
   /// The last published world.
   const msg::WorldState& world() const { return world_; }
-  /// Processes a frame that has just arrived.
-  void add_frame(const msg::DetectionFrame& message);
+  /// Processes a frame that has just arrived. `date_uncertainty` is the maximum error of its capture time
+  /// beyond the clock bound.
+  void add_frame(const msg::DetectionFrame& message, Duration date_uncertainty = Duration{0});
   /// Sets a callback for events of level `min_level` or higher.
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));

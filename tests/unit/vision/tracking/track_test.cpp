@@ -64,4 +64,23 @@ TEST_CASE("two observations move a displaced robot's track without averaging wit
   CHECK(moved.last.position_m == displaced_m);
 }
 
+TEST_CASE("an uncertain date makes a moving object's position uncertain, and no object at rest") {
+  const TrackModel model;
+  const auto variance_m2 = [&](double speed_mps, Duration date_uncertainty) {
+    TrackState state;
+    Time at = kBegin;
+    for (int i = 0; i < 30; ++i, at += Duration{16'666'667}) {
+      Observation observation = seen(at, {speed_mps * to_seconds(at - kBegin), 0});
+      observation.date_uncertainty = date_uncertainty;
+      state = advanced(state, observation, model);
+    }
+    const auto estimate = estimate_at(state, state.last.captured_at, model);
+    REQUIRE(estimate);
+    return estimate->position_variance_m2;
+  };
+  const Duration uncertainty{10'000'000};
+  CHECK(variance_m2(2, uncertainty) >= variance_m2(2, Duration{0}) + 0.9 * 0.02 * 0.02);
+  CHECK(variance_m2(0, uncertainty) < 1e-5);
+}
+
 }  // namespace sidestep::track_test
