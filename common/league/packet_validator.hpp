@@ -12,6 +12,7 @@ namespace sidestep::league {
 inline constexpr double kMaxHeading_rad =
     7;  // more than one turn in either direction, because senders use different ranges
 inline constexpr double kMaxTime_s = 8589934592.0;  // 2^33; fits into 64 bits as nanoseconds
+inline constexpr double kMinSenderTime_s = -3600;   // simulators begin a few seconds before 0
 inline constexpr std::size_t kMaxTextLength = 256;
 
 /// Checks the values of a packet during decoding and keeps the first error. Values decoded after an error are
@@ -28,11 +29,9 @@ class PacketValidator {
   }
   double within(double value, double bound) { return within(value, -bound, bound); }
   double probability(double value) { return within(value, 0, 1); }
-  Duration time(double seconds) {
-    const bool is_valid = seconds >= 0 && seconds <= kMaxTime_s;
-    require(is_valid, DecodeError::kTime);
-    return is_valid ? from_seconds(seconds) : Duration{0};
-  }
+  Duration time(double seconds) { return time_since(0, seconds); }
+  /// A time by the clock of a sender of vision packets, which may count from any time.
+  Duration sender_time(double seconds) { return time_since(kMinSenderTime_s, seconds); }
   template <typename List>
   void at_most(const List& list, int max_count) {
     require(list.size() <= max_count, DecodeError::kTooMany);
@@ -46,6 +45,12 @@ class PacketValidator {
   DecodeError error() const { return error_; }
 
  private:
+  Duration time_since(double min_s, double seconds) {
+    const bool is_valid = seconds >= min_s && seconds <= kMaxTime_s;
+    require(is_valid, DecodeError::kTime);
+    return is_valid ? from_seconds(seconds) : Duration{0};
+  }
+
   DecodeError error_ = DecodeError::kNone;
 };
 

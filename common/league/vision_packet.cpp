@@ -84,9 +84,10 @@ DetectionFrame read(const wire::vision::DetectionFrame& from, PacketValidator& v
   if (!validator.is_valid()) return detection;
   detection.frame_number = from.frame_number();
   detection.camera = from.camera_id();
-  detection.captured = validator.time(from.t_capture());
-  detection.sent = validator.time(from.t_sent());
-  if (from.has_t_capture_camera()) detection.captured_by_camera = validator.time(from.t_capture_camera());
+  detection.captured = validator.sender_time(from.t_capture());
+  detection.sent = validator.sender_time(from.t_sent());
+  if (from.has_t_capture_camera())
+    detection.captured_by_camera = validator.sender_time(from.t_capture_camera());
   for (const auto& ball : from.balls()) detection.balls.push_back(read(ball, validator));
   for (const auto& robot : from.robots_yellow()) detection.yellow.push_back(read(robot, validator));
   for (const auto& robot : from.robots_blue()) detection.blue.push_back(read(robot, validator));

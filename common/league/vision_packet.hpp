@@ -56,8 +56,8 @@ struct VisionPacket {
 std::vector<std::byte> encode(const VisionPacket& packet);
 
 /// Rejects a packet as a whole if any value in it is invalid: coordinates beyond kMaxCoordinate_m, headings
-/// beyond 7 rad, confidences outside 0 .. 1, times outside 0 .. 2^33 s, more than 64 robots of a team, ids
-/// out of range.
+/// beyond 7 rad, confidences outside 0 .. 1, times outside -3600 .. 2^33 s, more than 64 robots of a team,
+/// ids out of range.
 Decoded<VisionPacket> decode_vision(std::span<const std::byte> bytes);
 
 }  // namespace sidestep::league

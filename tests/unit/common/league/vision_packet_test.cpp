@@ -292,12 +292,13 @@ TEST_CASE("a packet with an invalid number is rejected as a whole with the reaso
     CHECK(error_after([=](D& d) { d.mutable_balls(0)->set_pixel_x(wrong); }) == DecodeError::kNumber);
     CHECK(error_after([=](D& d) { d.mutable_robots_blue(0)->set_pixel_y(wrong); }) == DecodeError::kNumber);
   }
-  for (const double wrong : {static_cast<double>(kNan), static_cast<double>(kInfinity), -0.001, 1e300}) {
+  for (const double wrong : {static_cast<double>(kNan), static_cast<double>(kInfinity), -3600.001, 1e300}) {
     CAPTURE(wrong);
     CHECK(error_after([=](D& d) { d.set_t_capture(wrong); }) == DecodeError::kTime);
     CHECK(error_after([=](D& d) { d.set_t_sent(wrong); }) == DecodeError::kTime);
     CHECK(error_after([=](D& d) { d.set_t_capture_camera(wrong); }) == DecodeError::kTime);
   }
+  CHECK(error_after([](D& d) { d.set_t_capture(-1), d.set_t_sent(-0.99); }) == DecodeError::kNone);
   CHECK(error_after([](D& d) { d.set_camera_id(kMaxCameras); }) == DecodeError::kCamera);
   CHECK(error_after([](D& d) { d.mutable_robots_blue(0)->set_robot_id(16); }) == DecodeError::kRobot);
   CHECK(error_after([](D& d) { d.mutable_robots_blue(0)->set_robot_id(~0U); }) == DecodeError::kRobot);
