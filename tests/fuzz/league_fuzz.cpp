@@ -32,7 +32,7 @@ bool try_vision(std::span<const std::byte> bytes) {
   SIDESTEP_REQUIRE(packet.detection || packet.geometry);
   if (packet.detection) {
     SIDESTEP_REQUIRE(packet.detection->camera < league::kMaxCameras);
-    SIDESTEP_REQUIRE(packet.detection->captured >= Duration{0});
+    SIDESTEP_REQUIRE(packet.detection->captured >= -std::chrono::hours(1));
     for (const auto& robot : packet.detection->yellow) check(robot);
     for (const auto& robot : packet.detection->blue) check(robot);
     for (const auto& ball : packet.detection->balls) {
@@ -155,13 +155,15 @@ bool try_clock(std::span<const std::byte> bytes) {
     Step step{};
     std::memcpy(&step, bytes.data(), sizeof step);
     bytes = bytes.subspan(sizeof step);
-    const Duration captured{static_cast<std::int64_t>(step.captured_ns % kMaxCapture_ns)};
-    const Duration sent{static_cast<std::int64_t>(step.sent_after_ns % kMaxCapture_ns)};
+    const Duration begin = -std::chrono::hours(1);
+    const Duration captured = begin + Duration{static_cast<std::int64_t>(step.captured_ns % kMaxCapture_ns)};
+    const Duration sent = begin + Duration{static_cast<std::int64_t>(step.sent_after_ns % kMaxCapture_ns)};
     now += std::chrono::microseconds(step.wait_us);
     const auto dated = clock.add(captured, sent, now);
     if (!dated) continue;
-    SIDESTEP_REQUIRE(*dated <= now + SenderClock::kMaxAhead);
-    SIDESTEP_REQUIRE(*dated >= now - 3 * SenderClock::kMaxDelay);
+    SIDESTEP_REQUIRE(dated->captured_at <= now);
+    SIDESTEP_REQUIRE(dated->captured_at >= now - SenderClock::kMaxAge);
+    SIDESTEP_REQUIRE(dated->uncertainty.count() > 0);
   }
   return true;
 }

@@ -34,10 +34,11 @@ LeagueInput::LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddr
 
 void LeagueInput::handle(std::span<const std::byte> datagram, const league::Endpoint& sender) {
   const msg::DetectionFrame* const frame = source_.decode(datagram, sender, bus_.now());
-  if (frame) node_.add_frame(*frame);
+  if (frame) node_.add_frame(*frame, source_.date_uncertainty());
   if (source_.error() != league::DecodeError::kNone) report_rejection(sender);
   if (source_.field() && !has_reported_field_) report_field();
   if (source_.clock_jumps() > reported_jumps_) report_clock_jump(sender);
+  report_clock(sender);
 }
 
 void LeagueInput::report_silence() {
@@ -63,6 +64,14 @@ void LeagueInput::report_field() {
   log(LogLevel::kWarning,
       fmt::format("the sender's field is {:g} x {:g} m, the scenario's is {:g} x {:g} m",
                   sender_field.length_m, sender_field.width_m, field_.length_m, field_.width_m));
+}
+
+void LeagueInput::report_clock(const league::Endpoint& sender) {
+  const SenderClock* const clock = source_.clock();
+  if (!clock || clock->kind() == reported_kind_ || !clock_reports_.admit(bus_.now())) return;
+  reported_kind_ = clock->kind();
+  log(reported_kind_ == SenderClockKind::kSteady ? LogLevel::kInfo : LogLevel::kWarning,
+      fmt::format("the clock of sender {} {}", to_text(sender), describe(*clock)));
 }
 
 void LeagueInput::report_clock_jump(const league::Endpoint& sender) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/messaging/dds/bus.hpp"
+#include "common/time/rate_limit.hpp"
 #include "vision/league/league_source.hpp"
 #include "vision/tracking/vision_node.hpp"
 
@@ -29,6 +30,7 @@ class LeagueInput {
   void report_rejection(const league::Endpoint& sender);
   void report_field();
   void report_clock_jump(const league::Endpoint& sender);
+  void report_clock(const league::Endpoint& sender);
 
   DdsBus& bus_;
   LeagueAddress address_;
@@ -39,6 +41,8 @@ class LeagueInput {
   std::uint64_t next_report_ = 1;  ///< number of rejected packets at which the next report is due
   bool has_reported_field_ = false;
   std::uint64_t reported_jumps_ = 0;
+  SenderClockKind reported_kind_ = SenderClockKind::kSteady;
+  RateLimit clock_reports_{1, std::chrono::seconds(5)};
 };
 
 }  // namespace sidestep

@@ -59,12 +59,14 @@ const msg::DetectionFrame* LeagueSource::decode(std::span<const std::byte> datag
     ++counts_.duplicates;
     return nullptr;
   }
-  const auto captured_at = sender.clock.add(detection.captured, detection.sent, now);
-  if (!captured_at) {
+  latest_ = static_cast<std::size_t>(&sender - senders_.data());
+  const auto dated = sender.clock.add(detection.captured, detection.sent, now);
+  if (!dated || dated->uncertainty > SenderClock::kMaxUncertainty) {
     ++counts_.unsynchronised;
     return nullptr;
   }
-  fill_frame(detection, *captured_at);
+  date_uncertainty_ = dated->uncertainty;
+  fill_frame(detection, dated->captured_at);
   ++counts_.frames;
   return &frame_;
 }

@@ -30,7 +30,9 @@ class LeagueSource {
     std::array<std::uint64_t, league::kDecodeErrors> rejected{};
     /// Number of frames dropped because they were received before.
     std::uint64_t duplicates = 0;
-    std::uint64_t unsynchronised = 0;  ///< number of frames whose capture time could not be determined
+    /// Number of frames whose capture time could not be determined, or only with an uncertainty of more than
+    /// SenderClock::kMaxUncertainty.
+    std::uint64_t unsynchronised = 0;
     /// Number of detections dropped: balls and obstacles beyond the capacity of a frame (the obstacles
     /// nearest to robots are kept), and robots of the scenario without a heading.
     std::uint64_t dropped = 0;
@@ -44,6 +46,10 @@ class LeagueSource {
   [[nodiscard]] const msg::DetectionFrame* decode(std::span<const std::byte> datagram,
                                                   const league::Endpoint& sender, Time now);
 
+  /// Maximum error of the capture time of the frame that decode() returned last.
+  Duration date_uncertainty() const { return date_uncertainty_; }
+  /// The clock of the sender of the latest detections; nullptr before.
+  const SenderClock* clock() const { return latest_ ? &senders_[*latest_].clock : nullptr; }
   const Counts& counts() const { return counts_; }
   void count_drops(DropCounters& drops) const;
   /// Number of packets rejected so far, for any reason.
@@ -83,6 +89,8 @@ class LeagueSource {
   std::vector<Circle> obstacles_;  ///< obstacles in the frame that is being filled
   std::vector<const league::DetectedBall*> by_confidence_;
   std::optional<league::FieldSize> field_;
+  std::optional<std::size_t> latest_;  ///< index of the sender of the latest detections
+  Duration date_uncertainty_{0};
   league::DecodeError error_ = league::DecodeError::kNone;
   Counts counts_;
 };

@@ -1,64 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "common/time/time.hpp"
+#include "vision/league/dated_capture.hpp"
+#include "vision/league/scaled_sender_clock.hpp"
+#include "vision/league/sender_rate.hpp"
+#include "vision/league/steady_sender_clock.hpp"
 
 namespace sidestep {
 
-/// Converts times of a sender's clock, whose epoch is arbitrary, to the local clock, from one-way messages.
-/// The lag of a message (arrival minus sending time) is the clock offset plus a delay. The minimum lag over
-/// the last two seconds in which messages arrived is the offset plus the minimum delay. A drift of 200 ppm
-/// causes an error of 0.4 ms, and delayed messages have no effect if at least one message in two seconds is
-/// on time. The sender's clock must run at the rate of the local clock.
+/// How times of a sender are converted to the local clock.
+enum class SenderClockKind : std::uint8_t {
+  kSteady,   ///< the sender's clock has the local clock's rate
+  kScaled,   ///< it has another rate, which is measured
+  kArrival,  ///< its times are useless: frames are dated by their arrival
+};
+
+/// Converts times of a sender's clock to the local clock, from one-way messages. The epoch of the sender's
+/// clock is arbitrary and its rate may be that of a simulation.
 class SenderClock {
  public:
-  /// A message with a longer apparent delay is useless, or shows that the sender's clock has been set.
-  static constexpr Duration kMaxDelay{500'000'000};
-  /// A lag below the minimum by more than this is accepted only after further messages agree with it.
-  static constexpr Duration kMaxAhead{50'000'000};
+  /// Dates that are less certain are not to be used.
+  static constexpr Duration kMaxUncertainty{15'000'000};
+  /// Uncertainty of a date by arrival. A constant delay is part of the latency that conformance measures, so
+  /// this covers only its variation.
+  static constexpr Duration kArrivalUncertainty{15'000'000};
+  /// A date is at most this much earlier than the arrival.
+  static constexpr Duration kMaxAge = 2 * SteadySenderClock::kMaxDelay;
+  /// Time without output at the beginning, and, if dates are arrivals, after a silence of the same length.
+  static constexpr Duration kSettlingTime = SteadySenderClock::kSettlingTime;
 
-  /// Initial time without output, because a process that was suspended receives old messages in one burst.
-  static constexpr Duration kSettlingTime{100'000'000};
+  /// The local time of a frame's capture, never later than `arrival`. `captured` and `sent` are by the
+  /// sender's clock; a `sent` before `captured` or more than 500 ms after it is from another clock and
+  /// ignored. The true time is within the uncertainty if a message in 100 ms is on time. nullopt while the
+  /// clock settles, and for a message that contradicts earlier ones.
+  [[nodiscard]] std::optional<DatedCapture> add(Duration captured, Duration sent, Time arrival);
 
-  /// The local time of a frame's capture. `captured` and `sent` are by the sender's clock; a `sent` before
-  /// `captured` or more than kMaxDelay after it is from another clock and ignored. nullopt within
-  /// kSettlingTime of the first message, for a message delayed by more than kMaxDelay, and for a message that
-  /// contradicts earlier ones. A clock that was set forward is accepted after 5 consecutive messages that
-  /// agree. A clock that was set back is accepted after 1 s of such messages, because a suspended process
-  /// receives late messages only for a short time.
-  [[nodiscard]] std::optional<Time> add(Duration captured, Duration sent, Time arrival);
-
+  SenderClockKind kind() const { return is_by_arrival_ ? SenderClockKind::kArrival : kind_; }
+  /// The sender's seconds per local second; 1 unless kScaled.
+  double rate() const { return kind() == SenderClockKind::kScaled ? rate_ : 1; }
   /// Number of jumps detected in the sender's clock.
   std::uint64_t jumps() const { return jumps_; }
 
  private:
-  static constexpr Duration kWindowPart{250'000'000};
-  static constexpr std::size_t kWindowParts = 8;
-  static constexpr int kMinAgreeing = 5;
-  static constexpr Duration kMinAgreementTime{1'000'000'000};
+  std::optional<DatedCapture> dated_by_sender(Duration captured, Duration sent, Time arrival);
+  std::optional<DatedCapture> dated_steadily(Duration captured, Duration sent, Time arrival);
+  std::optional<DatedCapture> dated_at_rate(Duration captured, Duration sent, Time arrival);
+  void choose_rate(Time arrival);
+  void judge(const std::optional<DatedCapture>& dated, Time arrival);
 
-  /// Consecutive messages that contradict the estimate and agree with each other.
-  struct Disagreement {
-    Duration min_lag{0};
-    Time since{};
-    int count = 0;
-  };
-
-  Duration min_lag() const;
-  void reset(Duration lag, Time arrival);
-  void update(Duration lag, Time arrival);
-  bool confirms_jump(Duration lag, Time arrival, bool is_forward);
-
-  std::array<Duration, kWindowParts> min_lags_{};  ///< of each part of the window, newest first
-  std::size_t parts_ = 0;                          ///< number of parts in use
-  Time part_since_{};
-  Time settled_at_{};
-  Disagreement disagreement_;
+  SenderClockKind kind_ = SenderClockKind::kSteady;
+  SteadySenderClock steady_;
+  ScaledSenderClock scaled_;
+  SenderRate measured_;
+  double rate_ = 1;
+  bool is_rate_known_ = true;
+  std::optional<Time> steady_since_;  ///< since when a scaled clock has run steadily
   std::uint64_t jumps_ = 0;
+
+  bool is_by_arrival_ = false;
+  Time last_arrival_ = Time::min();
+  Duration useless_for_{0};  ///< time in which messages arrived since the last usable date
+  Duration useful_for_{0};   ///< the same, since the last long time without usable dates
+  Time settled_at_{};        ///< from when on dates by arrival are given
 };
+
+/// What the clock is like and how frames are dated, for messages. It continues "the clock of sender S ".
+std::string describe(const SenderClock& clock);
 
 }  // namespace sidestep

@@ -165,6 +165,35 @@ TEST_CASE("a restarted sender is accepted soon because it sends from another por
   }
 }
 
+TEST_CASE("frames of a simulator that has become slower are dropped until their times are known again") {
+  LeagueSource source(two_teams());
+  Time now = kNow;
+  Duration simulated = -std::chrono::seconds(1);
+  const auto run = [&](Duration duration, double rate) {
+    int frames = 0, beyond = 0;
+    for (const Time end = now + duration; now < end; ++frames) {
+      now += from_seconds(1 / (60 * rate));
+      simulated += from_seconds(1 / 60.0);
+      league::DetectionFrame detection =
+          detection_at(simulated, static_cast<std::uint32_t>(simulated / milliseconds(1)));
+      detection.sent = simulated;
+      if (const auto* frame = source.decode(datagram(detection), kSender, now))
+        beyond += std::chrono::abs(time_from_ns(frame->captured_at_ns()) - now) > source.date_uncertainty();
+    }
+    CHECK(beyond == 0);
+    return frames;
+  };
+  (void)run(std::chrono::seconds(3), 1);
+  const std::uint64_t before = source.counts().unsynchronised;
+  (void)run(std::chrono::seconds(1), 0.6);
+  CHECK(source.counts().unsynchronised > before);
+  const std::uint64_t known = source.counts().frames;
+  const int frames = run(std::chrono::seconds(5), 0.6);
+  CHECK(source.counts().frames == known + static_cast<std::uint64_t>(frames));
+  REQUIRE(source.clock());
+  CHECK(source.clock()->rate() == Approx(0.6).margin(0.01));
+}
+
 TEST_CASE("a geometry packet sets the field and gives no frame") {
   Rng rng(1);
   LeagueSource source(two_teams());
