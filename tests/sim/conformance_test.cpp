@@ -157,6 +157,14 @@ TEST_CASE("a robot is not blamed for how it moves while reports are missing, and
   if (is_paused_always) CHECK_THAT(row.figures, ContainsSubstring("a computer or the network is too busy"));
 }
 
+TEST_CASE("a negative latency is not judged, and no figure is printed") {
+  const ConformanceRow row = latency_row(40ms, -51ms, true);
+  CHECK(row.conformity == Conformity::kNotJudged);
+  CHECK(row.figures.find("ms") == std::string::npos);
+  CHECK(latency_row(40ms, 0ms, true).conformity == Conformity::kPassed);
+  CHECK(latency_row(40ms, 50ms, false).conformity == Conformity::kFailed);
+}
+
 TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails the latency check") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;

@@ -24,6 +24,16 @@ const char* to_text(Conformity conformity) {
 
 }  // namespace
 
+ConformanceRow latency_row(Duration lead, Duration late, bool is_allowed) {
+  if (!(lead + late > Duration{0}))
+    return {"latency", Conformity::kNotJudged,
+            "the robot seems to move before it is commanded: vision's frames are dated wrongly; see what "
+            "vision says about the sender's clock"};
+  return {"latency", is_allowed ? Conformity::kPassed : Conformity::kFailed,
+          fmt::format("the motors obey after {:.0f} ms; the robot assumes {:.0f} ms",
+                      to_seconds(lead + late) * 1e3, to_seconds(lead) * 1e3)};
+}
+
 std::string to_line(const ConformanceRow& row) {
   return fmt::format("{:<10}  {:<20}  {}", to_text(row.conformity), row.rule, row.figures);
 }

@@ -37,6 +37,10 @@ struct ConformanceReport {
   bool has_failed() const;
 };
 
+/// The row "latency": the motors obey by `late` later than the robot assumes, which is `lead`. If they seem
+/// to obey before the command, vision's dates are wrong, and nothing is judged or printed.
+ConformanceRow latency_row(Duration lead, Duration late, bool is_allowed);
+
 /// The row as one line of text.
 std::string to_line(const ConformanceRow& row);
 /// The lines to put into the scenario file.

@@ -192,7 +192,7 @@ class LatencyStep final : public ConformanceStep {
   }
 
   /// The delay with which the reference fits the observations best.
-  Duration late() const {
+  Duration measured_late() const {
     Duration best{0};
     double least = INFINITY;
     for (Duration late = -kMaxLate; late <= kMaxLate; late += 500us) {
@@ -212,13 +212,10 @@ class LatencyStep final : public ConformanceStep {
                        samples_.size(), kMinStartSamples)});
       return;
     }
-    const double late_s = to_seconds(late());
-    const double lead_s = to_seconds(context.probe.robot_report()->lead);
+    const Duration late = measured_late();
     context.is_late =
-        std::abs(late_s) * context.scenario.limits.speed_mps > context.scenario.tracking_bound_m;
-    context.report.rows.push_back({"latency", passed_if(!context.is_late),
-                                   fmt::format("the motors obey after {:.0f} ms; the robot assumes {:.0f} ms",
-                                               (lead_s + late_s) * 1e3, lead_s * 1e3)});
+        std::abs(to_seconds(late)) * context.scenario.limits.speed_mps > context.scenario.tracking_bound_m;
+    context.report.rows.push_back(latency_row(context.probe.robot_report()->lead, late, !context.is_late));
   }
 
   std::optional<Time> since_;
