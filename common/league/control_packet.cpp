@@ -12,6 +12,7 @@ namespace sidestep::league {
 namespace {
 
 constexpr int kMaxRobots = 64, kMaxErrors = 64;
+constexpr int kMaxFeedback = 4096;  // after a backlog, simulators answer many commands in one packet
 constexpr double kMaxSpeed_mps = 100, kMaxTurn_radps = 1000, kMaxWheel_mps = 1000, kMaxSimulationSpeed = 100;
 constexpr double kRadPerDegree = std::numbers::pi / 180;
 constexpr int kYellow = 1, kBlue = 2;
@@ -182,7 +183,7 @@ Decoded<TeamResponse> decode_team_response(std::span<const std::byte> bytes) {
   PacketValidator validator;
   TeamResponse packet;
   packet.errors = read_errors(message.errors(), validator);
-  validator.at_most(message.feedback(), kMaxRobots);
+  validator.at_most(message.feedback(), kMaxFeedback);
   if (!validator.is_valid()) return {{}, validator.error()};
   for (const auto& from : message.feedback())
     packet.feedback.push_back({read_number(from.id(), validator), from.dribbler_ball_contact()});

@@ -82,7 +82,7 @@ std::vector<std::byte> encode(const SimulatorResponse& packet);
 
 /// Decode a datagram. A packet is rejected as a whole if any value in it is invalid: speeds beyond 100 m/s or
 /// 1000 rad/s, coordinates beyond kMaxCoordinate_m, headings beyond 7 rad, robot numbers above 15, more than
-/// 64 robots or errors.
+/// 64 robots or errors, or more than 4096 entries of feedback.
 Decoded<TeamCommands> decode_team_commands(std::span<const std::byte> bytes);
 Decoded<TeamResponse> decode_team_response(std::span<const std::byte> bytes);
 Decoded<SimulatorCommand> decode_simulator_command(std::span<const std::byte> bytes);

@@ -102,6 +102,16 @@ TEST_CASE("commands and responses survive encoding and decoding") {
   CHECK(decode_simulator_response({}).packet->errors.empty());
 }
 
+TEST_CASE("the feedback of a simulator after a backlog is accepted") {
+  TeamResponse response;
+  for (std::uint32_t i = 0; i < 88; ++i) response.feedback.push_back({i % 11, false});
+  const auto decoded = decode_team_response(encode(response));
+  REQUIRE(decoded.packet);
+  CHECK(decoded.packet->feedback.size() == 88);
+  response.feedback.resize(4097);
+  CHECK(decode_team_response(encode(response)).error == DecodeError::kTooMany);
+}
+
 TEST_CASE("team commands with one invalid value are rejected as a whole") {
   const auto error_of = [](auto spoil) {
     wire::control::TeamCommands message;
