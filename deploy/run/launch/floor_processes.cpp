@@ -2,6 +2,7 @@
 #include "deploy/run/launch/floor_processes.hpp"
 
 #include <iterator>
+#include <optional>
 #include <sstream>
 
 #include "common/league/multicast.hpp"
@@ -12,6 +13,15 @@ namespace {
 std::vector<std::string> split_words(const std::string& text) {
   std::istringstream stream(text);
   return {std::istream_iterator<std::string>(stream), {}};
+}
+
+/// The value of an option that is given as `NAME VALUE` or `NAME=VALUE`; nullopt if it is not given.
+std::optional<std::string> value_of(const std::string& name, const std::vector<std::string>& arguments) {
+  for (auto word = arguments.begin(); word != arguments.end(); ++word) {
+    if (word->starts_with(name + "=")) return word->substr(name.size() + 1);
+    if (*word == name) return std::next(word) == arguments.end() ? "" : *std::next(word);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -29,8 +39,12 @@ FloorProcess robots_process(const FloorOptions& options) {
 
 FloorProcess vision_process(const FloorOptions& options) {
   std::vector<std::string> arguments = split_words(options.vision);
-  if (options.driver == "league" && arguments.empty())
-    arguments = {"--source", "ssl", "--ssl-vision", league::kSimulatedVisionEndpoint};
+  if (options.driver != "league") return {"vision", "sidestep-vision", arguments};
+  // Options of the user come in addition to these, or replace them one by one.
+  const auto source = value_of("--source", arguments);
+  if (source.value_or("ssl") == "ssl" && !value_of("--ssl-vision", arguments))
+    arguments.insert(arguments.begin(), {"--ssl-vision", league::kSimulatedVisionEndpoint});
+  if (!source) arguments.insert(arguments.begin(), {"--source", "ssl"});
   return {"vision", "sidestep-vision", arguments};
 }
 

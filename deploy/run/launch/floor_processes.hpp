@@ -25,7 +25,8 @@ struct FloorProcess {
 
 /// The process that moves the robots.
 FloorProcess robots_process(const FloorOptions& options);
-/// The vision process. It receives the league's packets if the robots are driven by the league's protocol.
+/// The vision process. It receives the league's packets if the robots are driven by the league's protocol,
+/// unless the extra options name another source.
 FloorProcess vision_process(const FloorOptions& options);
 
 /// The names of sidestep-robot's drivers.
