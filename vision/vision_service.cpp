@@ -35,6 +35,12 @@ void require_none(const ImageOptions& options) {
           name, file));
 }
 
+/// The interface over which packets are sent.
+std::string sending_interface(const std::vector<std::string>& interfaces) {
+  if (interfaces.empty() || interfaces.front() == "all") return league::kLeagueInterface;
+  return interfaces.front();
+}
+
 }  // namespace
 
 void add_league_options(const CliCommand& app, VisionOptions& options) {
@@ -54,11 +60,30 @@ void add_league_options(const CliCommand& app, VisionOptions& options) {
       .check(in_range(0U, league::kMaxCameras - 1))
       .needs(source)
       .show_default("0 .. N-1 for the scenario's N = vision.columns x vision.rows");
+  app.add_option("--league-sender", options.league_senders,
+                 "ADDRESS or ADDRESS:PORT of the only senders whose vision packets are used, e.g. 10.0.0.7")
+      .comma_separated()
+      .check([](const std::string& text) {
+        try {
+          (void)parse_sender(text);
+          return std::string();
+        } catch (const std::invalid_argument& error) {
+          return std::string(error.what());
+        }
+      })
+      .needs(source)
+      .show_default("the first that is heard");
+  app.add_flag("--other-field", options.may_have_other_field,
+               "use vision packets although the sender's field has another size than the scenario's")
+      .needs(source);
   app.add_optional_value("--tracked", options.tracked, league::kTrackedEndpoint,
                          "send tracked packets to this ADDRESS:PORT");
-  app.add_option("--league-interface", options.league_interface,
-                 "address of the network interface for league packets")
-      .show_default();
+  app.add_option(
+         "--league-interface", options.league_interfaces,
+         "addresses of the network interfaces on which league packets are received, or 'all'; packets "
+         "are sent over the first")
+      .comma_separated()
+      .show_default(league::kLeagueInterface);
 }
 
 VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation incarnation,
@@ -66,13 +91,17 @@ VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation 
     : node_(bus, scenario, incarnation, source_of(scenario, options), configured_cameras(scenario, options)) {
   if (options.is_league_source || !scenario.vision.images) require_none(options.images);
   if (options.is_league_source) {
-    league_.emplace(bus, scenario, LeagueAddress{options.league_vision, options.league_interface}, node_);
+    league_.emplace(bus, scenario,
+                    LeagueReception{options.league_vision, options.league_interfaces, options.league_senders,
+                                    options.may_have_other_field},
+                    node_);
   } else if (scenario.vision.images) {
     images_.emplace(bus, image_reader(scenario, options.images), node_);
   }
   if (!options.tracked) return;
   tracked_.emplace(scenario, incarnation);
-  tracked_sender_.emplace(league::parse_multicast_endpoint(*options.tracked), options.league_interface);
+  tracked_sender_.emplace(league::parse_multicast_endpoint(*options.tracked),
+                          sending_interface(options.league_interfaces));
   node_.set_listener([this](const msg::WorldState& world) {
     tracked_sender_->send(league::encode(tracked_->packet_of(world)));
   });

@@ -20,12 +20,15 @@ struct VisionOptions {
   std::string league_vision = league::kVisionEndpoint;
   /// Cameras that together see the whole floor; empty: the scenario's.
   std::vector<std::uint32_t> league_cameras;
-  std::optional<std::string> tracked;  ///< endpoint to which tracked packets are sent
-  std::string league_interface = league::kLeagueInterface;
+  std::optional<std::string> tracked;       ///< endpoint to which tracked packets are sent
+  std::vector<std::string> league_senders;  ///< the only ones to use; empty: the first that is heard
+  bool may_have_other_field = false;        ///< the sender's field may differ from the scenario's
+  /// Packets are received on all of these interfaces, and sent over the first.
+  std::vector<std::string> league_interfaces{league::kLeagueInterface};
   ImageOptions images;
 };
 
-/// Adds --source, --ssl-vision, --league-cameras, --tracked and --league-interface.
+/// Adds --source and the options of the league's packets.
 void add_league_options(const CliCommand& app, VisionOptions& options);
 
 /// The vision service with the sources and outputs selected by the options. Precondition: the bus makes no

@@ -8,8 +8,8 @@
 #include <fmt/ranges.h>
 #include <ifaddrs.h>
 #include <memory>
+#include <net/if.h>
 #include <netinet/in.h>
-#include <optional>
 #include <stdexcept>
 #include <sys/socket.h>
 
@@ -21,22 +21,10 @@ std::string address_text(std::uint32_t address) {
 }
 
 std::uint32_t interface_address(const std::string& text) {
-  in_addr wanted_address{};
-  const auto wanted = inet_pton(AF_INET, text.c_str(), &wanted_address) == 1
-                          ? std::optional(ntohl(wanted_address.s_addr))
-                          : std::nullopt;
-  ifaddrs* list = nullptr;
-  if (getifaddrs(&list) != 0) {
-    throw std::runtime_error(fmt::format("cannot list the network interfaces: {}", std::strerror(errno)));
-  }
-  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, freeifaddrs);
   std::vector<std::string> found;
-  for (const ifaddrs* entry = list; entry; entry = entry->ifa_next) {
-    if (!entry->ifa_addr || entry->ifa_addr->sa_family != AF_INET) continue;
-    sockaddr_in address{};
-    std::memcpy(&address, entry->ifa_addr, sizeof address);
-    if (wanted && ntohl(address.sin_addr.s_addr) == *wanted) return *wanted;
-    found.push_back(fmt::format("{} ({})", address_text(ntohl(address.sin_addr.s_addr)), entry->ifa_name));
+  for (const NetworkInterface& interface : network_interfaces()) {
+    if (interface.address == text) return parse_address(text);
+    found.push_back(fmt::format("{} ({})", interface.address, interface.name));
   }
   throw std::invalid_argument(
       fmt::format("no network interface of this machine has the address \"{}\", expected one of {}", text,
@@ -50,6 +38,22 @@ void set(const FileDescriptor& socket, int level, int option, const Value& value
 }
 
 }  // namespace
+
+std::vector<NetworkInterface> network_interfaces() {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) {
+    throw std::runtime_error(fmt::format("cannot list the network interfaces: {}", std::strerror(errno)));
+  }
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, freeifaddrs);
+  std::vector<NetworkInterface> found;
+  for (const ifaddrs* entry = list; entry; entry = entry->ifa_next) {
+    if (!entry->ifa_addr || entry->ifa_addr->sa_family != AF_INET || !(entry->ifa_flags & IFF_UP)) continue;
+    sockaddr_in address{};
+    std::memcpy(&address, entry->ifa_addr, sizeof address);
+    found.push_back({address_text(ntohl(address.sin_addr.s_addr)), entry->ifa_name});
+  }
+  return found;
+}
 
 MulticastSender::MulticastSender(const Endpoint& group, const std::string& interface)
     : group_(group), socket_(open_udp_socket(group)) {

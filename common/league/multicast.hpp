@@ -21,6 +21,14 @@ inline constexpr const char* kSimulatedVisionEndpoint = "224.5.23.2:10020";
 /// The loopback interface, so that by default no packet leaves the machine.
 inline constexpr const char* kLeagueInterface = "127.0.0.1";
 
+/// A network interface of this machine with an IPv4 address.
+struct NetworkInterface {
+  std::string address, name;
+};
+
+/// All interfaces of this machine that are up. Throws std::runtime_error if they cannot be listed.
+[[nodiscard]] std::vector<NetworkInterface> network_interfaces();
+
 /// Sends datagrams to a multicast group over one interface, given by its address, without blocking. The TTL
 /// is 1, so the datagrams stay in the local network. The constructor throws std::invalid_argument if the
 /// machine has no such interface, and std::runtime_error if the socket cannot be opened.

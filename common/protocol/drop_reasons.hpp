@@ -68,6 +68,7 @@ enum class DropReason : std::uint16_t {
   kRepeatedLeagueFrame,
   kUndatedLeagueFrame,
   kUnusedLeagueDetection,
+  kOtherLeagueSender,
   // Counted by the simulator and its robots.
   kCommandLost,
   kFencedCommand,
@@ -178,6 +179,8 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
      "frames of the league whose capture time cannot be determined yet", false},
     {DropReason::kUnusedLeagueDetection, "unused_league_detection",
      "balls and obstacles beyond the capacity of a frame, and robots without a heading", false},
+    {DropReason::kOtherLeagueSender, "other_league_sender",
+     "packets of the league from senders that are not used, because another one is", true},
     {DropReason::kCommandLost, "command_lost", "commands lost by the simulated radio", false},
     {DropReason::kFencedCommand, "fenced_command", "commands of an incarnation or epoch that a robot refuses",
      false},

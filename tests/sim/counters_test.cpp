@@ -383,8 +383,9 @@ const std::set<DropReason> kCoveredByOtherTests{
                                       // one
     DropReason::kRefusedParticipant,
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
-    DropReason::kMalformedLeaguePacket,  // league/league_source_test, like the next three
+    DropReason::kMalformedLeaguePacket,  // league/league_source_test, like the next four
     DropReason::kRepeatedLeagueFrame, DropReason::kUndatedLeagueFrame, DropReason::kUnusedLeagueDetection,
+    DropReason::kOtherLeagueSender,
     DropReason::kUnsentLeaguePacket,  // needs a broken network
     DropReason::kUnstoredCommand,     // adapters/robot_driver_node_test
     DropReason::kMalformedOdometry,   // adapters/velocity_driver_test

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "common/messaging/detected_obstacles.hpp"
 
@@ -17,7 +18,8 @@ std::size_t index_of(Team team) { return team == Team::kBlue ? 0 : 1; }
 
 }  // namespace
 
-LeagueSource::LeagueSource(const Scenario& scenario) {
+LeagueSource::LeagueSource(const Scenario& scenario, std::vector<league::Endpoint> senders)
+    : choice_(std::move(senders)) {
   require_unique_numbers(scenario);
   for (const RobotSpec& robot : scenario.robots)
     ids_[index_of(robot.team)][number_in_team(robot.id)] = robot.id;
@@ -33,6 +35,7 @@ void LeagueSource::count_drops(DropCounters& drops) const {
   drops.count(DropReason::kRepeatedLeagueFrame, std::nullopt, counts_.duplicates);
   drops.count(DropReason::kUndatedLeagueFrame, std::nullopt, counts_.unsynchronised);
   drops.count(DropReason::kUnusedLeagueDetection, std::nullopt, counts_.dropped);
+  drops.count(DropReason::kOtherLeagueSender, std::nullopt, choice_.refused_packets());
 }
 
 std::uint64_t LeagueSource::clock_jumps() const {
@@ -50,6 +53,7 @@ const msg::DetectionFrame* LeagueSource::decode(std::span<const std::byte> datag
     ++counts_.rejected[static_cast<std::size_t>(error_)];
     return nullptr;
   }
+  if (!choice_.admit(endpoint, now)) return nullptr;
   if (decoded.packet->geometry) field_ = decoded.packet->geometry->field;
   if (!decoded.packet->detection) return nullptr;
 

@@ -13,14 +13,16 @@
 #include "common/league/vision_packet.hpp"
 #include "common/protocol/drop_counters.hpp"
 #include "idl/vision.hpp"
+#include "vision/league/sender_choice.hpp"
 #include "vision/league/sender_clock.hpp"
 
 namespace sidestep {
 
 /// Converts the league's vision packets to detection frames. Robots are identified by team and number; a
 /// robot without a number, or with a number that is not in the scenario, becomes an obstacle of a league
-/// robot's radius. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets, and
-/// packets whose capture time cannot be determined, are counted and dropped.
+/// robot's radius. One sender is used, or those that are listed; each sender's clock is estimated separately.
+/// Malformed, invalid and duplicate packets, and packets whose capture time cannot be determined, are counted
+/// and dropped.
 class LeagueSource {
  public:
   struct Counts {
@@ -38,8 +40,9 @@ class LeagueSource {
     std::uint64_t dropped = 0;
   };
 
-  /// Throws std::invalid_argument if two robots of the scenario have the same team and number.
-  explicit LeagueSource(const Scenario& scenario);
+  /// `senders` are the only senders to use, as in SenderChoice. Throws std::invalid_argument if two robots of
+  /// the scenario have the same team and number.
+  explicit LeagueSource(const Scenario& scenario, std::vector<league::Endpoint> senders = {});
 
   /// The detections in a datagram that has just been received; nullptr if there are none. Valid until the
   /// next call.
@@ -50,6 +53,7 @@ class LeagueSource {
   Duration date_uncertainty() const { return date_uncertainty_; }
   /// The clock of the sender of the latest detections; nullptr before.
   const SenderClock* clock() const { return latest_ ? &senders_[*latest_].clock : nullptr; }
+  const SenderChoice& choice() const { return choice_; }
   const Counts& counts() const { return counts_; }
   void count_drops(DropCounters& drops) const;
   /// Number of packets rejected so far, for any reason.
@@ -84,6 +88,7 @@ class LeagueSource {
 
   /// Robot ids, indexed by team and number.
   std::array<std::array<std::optional<RobotId>, league::kRobotNumbers>, 2> ids_;
+  SenderChoice choice_;
   std::vector<Sender> senders_;
   msg::DetectionFrame frame_;
   std::vector<Circle> obstacles_;  ///< obstacles in the frame that is being filled

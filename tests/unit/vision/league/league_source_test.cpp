@@ -128,8 +128,23 @@ TEST_CASE("if there are too many balls, those with the highest confidence are ke
   CHECK(source.counts().dropped == 2);
 }
 
-TEST_CASE("a duplicate frame is dropped, and each sender's clock is estimated separately") {
+TEST_CASE("two senders that are not listed are never mixed") {
   LeagueSource source(two_teams());
+  synchronise(source, kCaptured);
+  CHECK(source.decode(datagram(detection_at(kCaptured, 1)), kSender, kNow));
+  const std::uint64_t refused = source.choice().refused_packets();
+  league::VisionPacket packet{detection_at(kCaptured, 1), std::nullopt, std::nullopt};
+  Rng rng(1);
+  packet.geometry = league::test::random_geometry(rng);
+  CHECK_FALSE(source.decode(encode(packet), kOther, kNow + milliseconds(1)));
+  CHECK_FALSE(source.field());
+  CHECK(source.choice().refused_packets() == refused + 1);
+  CHECK(source.choice().refused() == kOther);
+  CHECK(source.choice().used() == kSender);
+}
+
+TEST_CASE("a duplicate frame is dropped, and each listed sender's clock is estimated separately") {
+  LeagueSource source(two_teams(), {kSender, kOther});
   synchronise(source, kCaptured);
   synchronise(source, std::chrono::milliseconds(1'009'999), kOther);
   const std::uint64_t unsynchronised = source.counts().unsynchronised;
