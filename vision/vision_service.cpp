@@ -35,10 +35,15 @@ void require_none(const ImageOptions& options) {
           name, file));
 }
 
-/// The interface over which packets are sent.
-std::string sending_interface(const std::vector<std::string>& interfaces) {
-  if (interfaces.empty() || interfaces.front() == "all") return league::kLeagueInterface;
-  return interfaces.front();
+std::vector<std::string> receiving_interfaces(const Scenario& scenario, const VisionOptions& options) {
+  if (!options.league_interfaces.empty()) return options.league_interfaces;
+  return {scenario.vision.has_league_everywhere ? "all" : league::kLeagueInterface};
+}
+
+/// The interface over which packets are sent: loopback, unless the options name one.
+std::string sending_interface(const VisionOptions& options) {
+  const auto& interfaces = options.league_interfaces;
+  return interfaces.empty() || interfaces.front() == "all" ? league::kLeagueInterface : interfaces.front();
 }
 
 }  // namespace
@@ -83,7 +88,7 @@ void add_league_options(const CliCommand& app, VisionOptions& options) {
          "addresses of the network interfaces on which league packets are received, or 'all'; packets "
          "are sent over the first")
       .comma_separated()
-      .show_default(league::kLeagueInterface);
+      .show_default("the scenario's vision.league_interfaces");
 }
 
 VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation incarnation,
@@ -92,16 +97,15 @@ VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation 
   if (options.is_league_source || !scenario.vision.images) require_none(options.images);
   if (options.is_league_source) {
     league_.emplace(bus, scenario,
-                    LeagueReception{options.league_vision, options.league_interfaces, options.league_senders,
-                                    options.may_have_other_field},
+                    LeagueReception{options.league_vision, receiving_interfaces(scenario, options),
+                                    options.league_senders, options.may_have_other_field},
                     node_);
   } else if (scenario.vision.images) {
     images_.emplace(bus, image_reader(scenario, options.images), node_);
   }
   if (!options.tracked) return;
   tracked_.emplace(scenario, incarnation);
-  tracked_sender_.emplace(league::parse_multicast_endpoint(*options.tracked),
-                          sending_interface(options.league_interfaces));
+  tracked_sender_.emplace(league::parse_multicast_endpoint(*options.tracked), sending_interface(options));
   node_.set_listener([this](const msg::WorldState& world) {
     tracked_sender_->send(league::encode(tracked_->packet_of(world)));
   });

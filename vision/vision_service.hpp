@@ -23,8 +23,8 @@ struct VisionOptions {
   std::optional<std::string> tracked;       ///< endpoint to which tracked packets are sent
   std::vector<std::string> league_senders;  ///< the only ones to use; empty: the first that is heard
   bool may_have_other_field = false;        ///< the sender's field may differ from the scenario's
-  /// Packets are received on all of these interfaces, and sent over the first.
-  std::vector<std::string> league_interfaces{league::kLeagueInterface};
+  /// Packets are received on all of these interfaces, and sent over the first. Empty: the scenario's.
+  std::vector<std::string> league_interfaces;
   ImageOptions images;
 };
 

@@ -66,6 +66,8 @@ struct VisionSpec {
   double miss_probability = 0;            ///< probability that a visible robot is missing from a frame
   double ghost_probability = 0;           ///< probability of a false detection of a robot in a frame
   double ghost_obstacle_probability = 0;  ///< probability of a false obstacle in a frame
+  /// Whether league packets may arrive on any network interface, not only on loopback.
+  bool has_league_everywhere = false;
   std::optional<ImageSpec> images;  ///< nullopt: the simulator publishes detections with the noise above
 };
 

@@ -27,6 +27,7 @@ constexpr const char* kExpected = "a scenario";
 constexpr Range kProbability{0, 1};
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::array<std::string_view, 2> kPixelFormats{"yuv422", "rgb"};
+constexpr std::array<std::string_view, 2> kLeagueInterfaces{"loopback", "all"};
 constexpr std::array<std::string_view, 4> kRestartable{"agents", "coordinator", "vision", "robots"};
 
 /// Turns the text into a name for reports and their files. Allowed are letters and digits of any language,
@@ -151,6 +152,9 @@ void read_vision(YamlMap& map, VisionSpec& vision) {
     inner.read("miss_probability", kProbability, vision.miss_probability);
     inner.read("ghost_probability", kProbability, vision.ghost_probability);
     inner.read("ghost_obstacle_probability", kProbability, vision.ghost_obstacle_probability);
+    std::string interfaces{kLeagueInterfaces.front()};
+    inner.read("league_interfaces", kLeagueInterfaces, interfaces);
+    vision.has_league_everywhere = interfaces == kLeagueInterfaces.back();
     read_images(inner, vision.images);
   });
 }

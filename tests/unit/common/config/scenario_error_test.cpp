@@ -111,6 +111,7 @@ TEST_CASE("unknown and duplicate keys are rejected with their line") {
   check_rejected(kRobot + "margin: 0.1\n", 2, "unknown key \"margin\", expected one of: ");
   check_rejected(kRobot + "margin: 0.1\n", 2, "; did you mean margin_m?");
   check_rejected(kRobot + "vision:\n  rate_hz: 60\n  dely_ms: 3\n", 4, "unknown key \"dely_ms\"");
+  check_rejected(kRobot + "vision:\n  league_interfaces: eth0\n", 3, "loopback");
   check_rejected("robots:\n  - id: 0\n    start_m: [0, 0]\n    goals_m: [[1, 0]]\n    colour: red\n", 5,
                  "unknown key \"colour\"");
   check_rejected(kRobot + "obstacles:\n  - {centre_m: [2, 2], radius_m: 0.1, hight_m: 3}\n", 3,

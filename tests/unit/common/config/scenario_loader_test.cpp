@@ -94,7 +94,7 @@ control_rate_hz: 50
 goal_tolerance_m: 0.03
 time_limit_s: 12.5
 vision: {images: {format: rgb, width_px: 1001, height_px: 400, camera_height_m: 3.5, distortion: 0.2}, rate_hz: 30, columns: 4, rows: 3, overlap_m: 0.25, position_noise_m: 0.002, heading_noise_rad: 0.01,
-         delay_ms: 12.5, miss_probability: 0.1, ghost_probability: 0.2, ghost_obstacle_probability: 0.3}
+         delay_ms: 12.5, miss_probability: 0.1, ghost_probability: 0.2, ghost_obstacle_probability: 0.3, league_interfaces: all}
 odometry: {scale_error: 0.01, velocity_noise_mps: 0.02}
 laser: {beams: 270, field_of_view_rad: 4.5, min_range_m: 0.1, max_range_m: 25, rate_hz: 40, range_error_m: 0.02, dropout_probability: 0.05, person_radius_m: 0.2}
 command_loss: 0.25
@@ -130,6 +130,7 @@ robots:
   CHECK(s.vision.columns == 4);
   CHECK(s.vision.rows == 3);
   CHECK(s.vision.overlap_m == 0.25);
+  CHECK(s.vision.has_league_everywhere);
   CHECK(s.vision.position_noise_m == 0.002);
   CHECK(s.vision.heading_noise_rad == 0.01);
   CHECK(s.vision.delay == std::chrono::microseconds(12500));
