@@ -19,6 +19,7 @@
 #include "common/terminal/terminal.hpp"
 #include "deploy/audit/audit_totals.hpp"
 #include "deploy/run/launch/floor_processes.hpp"
+#include "deploy/run/launch/log_notices.hpp"
 #include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_group.hpp"
 #include "deploy/trial/conformance/conformance.hpp"
@@ -53,7 +54,8 @@ const RobotSpec& only_robot(const Scenario& scenario) {
 /// Starts the processes that move the robot, and vision, unless they are already running.
 class Floor {
  public:
-  explicit Floor(const ConformanceOptions& options) : group_(folder_.file("log")) {
+  explicit Floor(const ConformanceOptions& options)
+      : group_(folder_.file("log")), notices_(folder_.file("log")) {
     if (options.driver == kRunning) return;
     FloorOptions floor = options.floor;
     floor.driver = options.driver == kSimulator ? "" : options.driver;
@@ -75,6 +77,9 @@ class Floor {
   Floor(const Floor&) = delete;
   Floor& operator=(const Floor&) = delete;
 
+  /// What the processes have logged since the last call and the user is to know.
+  std::vector<std::string> notices() { return notices_.next(); }
+
   /// Throws std::runtime_error with a process's last lines if that process has ended.
   void check() {
     for (const ChildEvent& event : group_.poll(0ms)) {
@@ -87,6 +92,7 @@ class Floor {
  private:
   TemporaryFolder folder_;
   ProcessGroup group_;
+  LogNotices notices_;
 };
 
 int examine(const ConformanceOptions& options) {
@@ -112,6 +118,10 @@ int examine(const ConformanceOptions& options) {
   while (!conformance.is_finished() && !is_interrupted) {
     bus.run_until(bus.now() + 100ms);
     floor.check();
+    for (const std::string& notice : floor.notices()) {
+      print_to(stderr, "{}{}\n", has_activity ? kEraseLine : "", notice);
+      activity.clear();  // is printed again below
+    }
     const auto& rows = conformance.report().rows;
     for (; printed < rows.size(); ++printed) {
       if (has_activity) print_to(stderr, "{}", kEraseLine);
