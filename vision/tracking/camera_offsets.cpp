@@ -11,7 +11,7 @@ namespace {
 constexpr Duration kMaxInterpolation{60'000'000};
 /// A sample further from the mean than this many standard deviations, plus kMinGate_m, is not of the same
 /// robot or place, unless there are kMaxContradictions in sequence: then a camera was moved.
-constexpr double kGateDeviations = 5, kMinGate_m = 0.01;
+constexpr double kOffsetGateDeviations = 5, kMinGate_m = 0.01;
 constexpr int kMaxContradictions = 60;
 constexpr double kSignificance = 4;  // standard deviations of the mean
 constexpr std::size_t kMaxPairs = 256;
@@ -69,20 +69,20 @@ void CameraOffsets::add_sample(std::uint32_t camera, std::uint32_t other, const 
   if (!(offset_m.norm() <= kMaxOffset_m)) return;
   const auto [first, second] = std::minmax(camera, other);
   const Vec2 sample_m = camera == first ? offset_m : Vec2(-offset_m);
-  auto pair = std::ranges::find_if(pairs_, [first = first, second = second](const Pair& p) {
-    return p.measured.first == first && p.measured.second == second;
+  auto pair = std::ranges::find_if(pairs_, [first = first, second = second](const CameraDisagreement& p) {
+    return p.first == first && p.second == second;
   });
   if (pair == pairs_.end()) {
     if (pairs_.size() == kMaxPairs) return;
-    pair = pairs_.insert(pairs_.end(), Pair{{first, second, Vec2(0, 0), 0, 0, false}, 0});
+    pair = pairs_.insert(pairs_.end(), CameraDisagreement{first, second});
   }
-  CameraDisagreement& measured = pair->measured;
+  CameraDisagreement& measured = *pair;
   const Vec2 deviation_m = sample_m - measured.offset_m;
   const bool is_far = measured.samples >= kMinSamples &&
-                      deviation_m.norm() > kMinGate_m + kGateDeviations * measured.scatter_m;
-  if (is_far && ++pair->contradictions < kMaxContradictions) return;
+                      deviation_m.norm() > kMinGate_m + kOffsetGateDeviations * measured.scatter_m;
+  if (is_far && ++measured.contradictions < kMaxContradictions) return;
   if (is_far) measured.samples = 0;
-  pair->contradictions = 0;
+  measured.contradictions = 0;
   measured.samples = std::min(measured.samples + 1, kMaxSamples);
   const double weight = 1.0 / measured.samples;
   if (measured.samples == 1) {
@@ -99,8 +99,7 @@ void CameraOffsets::add_sample(std::uint32_t camera, std::uint32_t other, const 
 
 void CameraOffsets::advance(Duration elapsed) {
   const double max_m = kMaxChange_mps * std::max(to_seconds(elapsed), 0.0);
-  for (Pair& pair : pairs_) {
-    CameraDisagreement& measured = pair.measured;
+  for (CameraDisagreement& measured : pairs_) {
     if (is_significant(measured)) measured.is_corrected = true;
     if (!measured.is_corrected || measured.samples < kMinSamples) continue;
     Vec2 &first_m = corrections_m_.at(measured.first), &second_m = corrections_m_.at(measured.second);
@@ -115,16 +114,13 @@ Vec2 CameraOffsets::correction_m(std::uint32_t camera) const {
   return found == corrections_m_.end() ? Vec2(0, 0) : found->second;
 }
 
-std::vector<CameraDisagreement> CameraOffsets::disagreements() const {
-  std::vector<CameraDisagreement> result;
-  for (const Pair& pair : pairs_) result.push_back(pair.measured);
-  return result;
-}
-
 double CameraOffsets::noise_m() const {
   double noise_m = 0;
-  for (const Pair& pair : pairs_)
-    if (pair.measured.is_corrected) noise_m = std::max(noise_m, pair.measured.scatter_m / std::sqrt(2.0));
+  for (const CameraDisagreement& pair : pairs_) {
+    if (!pair.is_corrected) continue;
+    const Vec2 rest_m = pair.offset_m + correction_m(pair.second) - correction_m(pair.first);
+    noise_m = std::max(noise_m, std::hypot(pair.scatter_m / std::sqrt(2.0), rest_m.norm() / 2));
+  }
   return noise_m;
 }
 

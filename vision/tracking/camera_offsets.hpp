@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "common/geometry/vec2.hpp"
@@ -18,6 +19,7 @@ struct CameraDisagreement {
   double scatter_m = 0;  ///< standard deviation of these differences on each axis, with the cameras' noise
   int samples = 0;       ///< up to CameraOffsets::kMaxSamples
   bool is_corrected = false;
+  int contradictions = 0;  ///< number of consecutive samples far from the mean
 };
 
 /// Measures how cameras with overlapping views disagree about robots that both see, and corrects it: badly
@@ -44,9 +46,9 @@ class CameraOffsets {
   /// What has to be added to positions of this camera.
   Vec2 correction_m(std::uint32_t camera) const;
   /// All pairs of cameras that have seen the same robots.
-  std::vector<CameraDisagreement> disagreements() const;
-  /// The standard deviation of positions that explains how much corrected cameras differ; 0 if none is
-  /// corrected.
+  std::span<const CameraDisagreement> pairs() const { return pairs_; }
+  /// The standard deviation of positions that explains how much cameras differ that are corrected, as far as
+  /// they are; 0 if none is.
   double noise_m() const;
   /// Forgets observations, but not what has been measured. Call it when the clock was set back.
   void forget();
@@ -65,15 +67,11 @@ class CameraOffsets {
       return latest[(next + latest.size() - 1 - age) % latest.size()];
     }
   };
-  struct Pair {
-    CameraDisagreement measured;
-    int contradictions = 0;  ///< number of consecutive samples far from the mean
-  };
   void compare(const Sightings& robot, const Sighting& now);
   void add_sample(std::uint32_t camera, std::uint32_t other, const Vec2& offset_m);
 
   std::map<std::uint32_t, Vec2> corrections_m_;  ///< of each camera
-  std::vector<Pair> pairs_;
+  std::vector<CameraDisagreement> pairs_;
   std::vector<Sightings> robots_;  ///< indexed by robot
 };
 

@@ -90,4 +90,10 @@ void Frame::assign(const msg::DetectionFrame& message, Time now, Duration max_le
   }
 }
 
+void Frame::translate(const Vec2& by_m) {
+  for (std::size_t i = 0; i < robot_count_; ++i) robots_[i].position_m += by_m;
+  for (std::size_t i = 0; i < ball_count_; ++i) balls_[i] += by_m;
+  for (std::size_t i = 0; i < obstacle_count_; ++i) obstacles_[i].position_m += by_m;
+}
+
 }  // namespace sidestep

@@ -62,6 +62,8 @@ class Frame {
   /// robot numbers below kMaxRobots, obstacle radii up to 10 m. Allocates nothing.
   void assign(const msg::DetectionFrame& message, Time now, Duration max_lead = kMaxFrameLead,
               Duration date_uncertainty = Duration{0});
+  /// Moves all detections.
+  void translate(const Vec2& by_m);
 
  private:
   void clear(const msg::DetectionFrame& message);

@@ -92,6 +92,7 @@ TrackerSettings tracker_settings(const Scenario& scenario) {
 
 Tracker::Tracker(const TrackerSettings& settings, std::span<const RobotId> roster)
     : settings_(settings),
+      configured_noise_m_(settings.robot.position_noise_m),
       roster_(roster.begin(), roster.end()),
       robots_(roster.size()),
       obstacles_(settings.obstacles) {
@@ -123,6 +124,10 @@ void Tracker::update(const Frame& frame) {
   }
   obstacles_.update(frame);
   frames_ += is_new ? 1 : 0;
+}
+
+void Tracker::set_min_noise(double position_noise_m) {
+  settings_.robot.position_noise_m = std::max(configured_noise_m_, position_noise_m);
 }
 
 void Tracker::forget() {

@@ -42,6 +42,8 @@ class Tracker {
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
+  /// Takes observations of robots for no more accurate than this standard deviation, if the settings do not.
+  void set_min_noise(double position_noise_m);
   /// Forgets all observations. Call when the clock was set back: later observations would seem older.
   void forget();
   /// Adds the counts of detections that were not used.
@@ -60,6 +62,7 @@ class Tracker {
   static constexpr std::uint16_t kNotInRoster = kMaxRobots;
 
   TrackerSettings settings_;
+  double configured_noise_m_;                         ///< position noise of robots by the settings
   std::vector<RobotId> roster_;                       ///< sorted
   std::array<std::uint16_t, kMaxRobots> index_of_{};  ///< index in the roster, or kNotInRoster
   std::vector<Track> robots_;                         ///< parallel to the roster

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/tracking/vision_event_logger.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace sidestep {
 
-VisionEventLogger::VisionEventLogger(const EventReporter& events, const std::vector<std::uint32_t>& cameras)
-    : events_(events) {
+VisionEventLogger::VisionEventLogger(const EventReporter& events, const std::vector<std::uint32_t>& cameras,
+                                     double max_disagreement_m)
+    : events_(events), max_disagreement_m_(max_disagreement_m) {
   for (const std::uint32_t camera : cameras) cameras_.emplace(camera, Camera{});
 }
 
@@ -70,6 +74,30 @@ void VisionEventLogger::update(const msg::WorldState& world, Time now) {
     events_.report(LogLevel::kWarning, robot, "robot {} is lost: no camera sees it", robot);
   }
   was_tracked_ = is_tracked_;
+}
+
+void VisionEventLogger::update(std::span<const CameraDisagreement> pairs, Time now) {
+  for (const CameraDisagreement& pair : pairs) {
+    if (pair.samples < kReportedSamples) continue;
+    const double offset_m = pair.offset_m.norm();
+    const auto [reported, is_new] = reported_m_.try_emplace({pair.first, pair.second}, offset_m);
+    // Differences that are not corrected are noise.
+    const bool is_reportable =
+        is_new || (pair.is_corrected && std::abs(offset_m - reported->second) > 0.1 * offset_m + 0.001);
+    if (!is_reportable || !pair_reports_.admit(now)) continue;
+    reported->second = offset_m;
+    if (!pair.is_corrected) {
+      events_.report(LogLevel::kDebug, {}, "cameras {} and {} agree within {:.1f} mm", pair.first,
+                     pair.second, std::max(offset_m, CameraOffsets::kMinOffset_m) * 1e3);
+      continue;
+    }
+    events_.report(
+        offset_m > max_disagreement_m_ ? LogLevel::kWarning : LogLevel::kInfo, {},
+        "cameras {} and {} disagree by {:.1f} mm (x {:+.1f}, y {:+.1f}, each with {:.1f} mm of noise): "
+        "each is corrected by half of it, but either may be wrong by all of it until it is calibrated",
+        pair.first, pair.second, offset_m * 1e3, pair.offset_m.x() * 1e3, pair.offset_m.y() * 1e3,
+        pair.scatter_m / std::sqrt(2.0) * 1e3);
+  }
 }
 
 }  // namespace sidestep

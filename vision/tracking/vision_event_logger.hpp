@@ -5,11 +5,15 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "common/log/log_event.hpp"
 #include "common/motion/version.hpp"
+#include "common/time/rate_limit.hpp"
 #include "common/time/time.hpp"
+#include "vision/tracking/camera_offsets.hpp"
 #include "vision/tracking/frame.hpp"
 
 namespace sidestep {
@@ -22,7 +26,9 @@ class VisionEventLogger {
   /// How long a camera may take to send its first frame.
   static constexpr Duration kFirstFrameTimeout{3'000'000'000};
 
-  VisionEventLogger(const EventReporter& events, const std::vector<std::uint32_t>& cameras);
+  /// Cameras that disagree by more than `max_disagreement_m` are a warning.
+  VisionEventLogger(const EventReporter& events, const std::vector<std::uint32_t>& cameras,
+                    double max_disagreement_m);
 
   /// Reports a frame from a camera that is not configured. The number of reports is limited, because a
   /// hostile sender may invent any number of cameras.
@@ -31,8 +37,13 @@ class VisionEventLogger {
   void on_frame(const Frame& frame, Time now);
   /// Processes the tracked world; call it once per period.
   void update(const msg::WorldState& world, Time now);
+  /// Reports how much cameras disagree, once it is known and when it changes.
+  void update(std::span<const CameraDisagreement> pairs, Time now);
 
  private:
+  /// Number of samples after which a disagreement is reported.
+  static constexpr int kReportedSamples = 60;
+
   struct Camera {
     Time heard_at{};
     bool is_lost = false;
@@ -44,6 +55,9 @@ class VisionEventLogger {
   void report_refusal(const Frame& frame, Camera& camera, Time now);
 
   const EventReporter& events_;
+  double max_disagreement_m_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> reported_m_;  ///< disagreement of each pair
+  RateLimit pair_reports_{8, std::chrono::seconds(10)};
   std::map<std::uint32_t, Camera> cameras_;
   std::optional<Time> begin_;
   std::uint64_t unknown_ = 0, next_unknown_report_ = 1;

@@ -19,11 +19,12 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
       period_(from_seconds(1 / scenario.vision.rate_hz)),
       next_(bus.now() + period_),
       max_lead_(max_vision_lead(max_clock_difference(scenario.clock_bound_s))),
+      offsets_(cameras),
       tracker_(tracker_settings(scenario), roster_of(scenario)),
       watch_(cameras),
       world_writer_(bus.advertise(topics::kWorld)),
       obstacle_writer_(bus.advertise(topics::kObstacles)),
-      event_logger_(events_, cameras),
+      event_logger_(events_, cameras, vision_error_bound_m(scenario.tracking_bound_m)),
       counters_(bus, static_cast<std::uint32_t>(Sender::kVision), incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   world_.vision(0);
@@ -48,6 +49,10 @@ void VisionNode::add_frame(const msg::DetectionFrame& message, Duration date_unc
   }
   frame_.assign(message, bus_.now(), max_lead_, date_uncertainty);
   event_logger_.on_frame(frame_, bus_.now());
+  if (frame_.is_usable()) {
+    offsets_.add(frame_);
+    frame_.translate(offsets_.correction_m(frame_.camera()));
+  }
   tracker_.update(frame_);
   if (frame_.is_usable()) watch_.on_frame(frame_.camera(), frame_.captured_at());
 }
@@ -59,6 +64,7 @@ void VisionNode::count_drops(DropCounters& drops) const {
 }
 
 void VisionNode::on_clock_set_back(Duration by) {
+  offsets_.forget();
   tracker_.forget();
   watch_.forget();
   next_ -= by;
@@ -67,12 +73,15 @@ void VisionNode::on_clock_set_back(Duration by) {
 void VisionNode::publish() {
   const Time now = bus_.now();
   if (now < next_ - period_) on_clock_set_back(next_ - now);
+  offsets_.advance(period_);
+  tracker_.set_min_noise(offsets_.noise_m());
   tracker_.world_at(now, world_);
   tracker_.obstacles_at(world_, obstacles_);
   if (!watch_.is_complete(now)) obstacles_.complete_within_m(0);
   world_writer_.publish(world_, now);
   obstacle_writer_.publish(obstacles_, now);
   event_logger_.update(world_, now);
+  event_logger_.update(offsets_.pairs(), now);
   if (listener_) listener_(world_);
   next_ += period_;
   if (next_ < now) next_ = now + period_;

@@ -68,7 +68,7 @@ TEST_CASE("the disagreement of two cameras is measured within a tenth, and corre
       const double angle_rad = rng.uniform(0, 2 * std::numbers::pi);
       BiasedCameras cameras(seed, {Vec2(0, 0), rotated(Vec2(offset_m, 0), angle_rad)});
       cameras.run(1, speed_mps, {0, 1});
-      const auto pairs = cameras.measured().disagreements();
+      const auto pairs = cameras.measured().pairs();
       REQUIRE(pairs.size() == 1);
       CHECK(pairs[0].offset_m.norm() == Approx(offset_m).epsilon(0.1));
       CHECK((pairs[0].offset_m - rotated(Vec2(offset_m, 0), angle_rad)).norm() < 0.1 * offset_m);
@@ -120,7 +120,7 @@ TEST_CASE("cameras that never see the same robot are not compared") {
   BiasedCameras cameras(7, {Vec2(0, 0), Vec2(0.04, 0)});
   cameras.run(3, 1, {0});
   cameras.run(3, 1, {1});
-  CHECK(cameras.measured().disagreements().empty());
+  CHECK(cameras.measured().pairs().empty());
 }
 
 TEST_CASE("a camera that is moved is measured anew") {
@@ -139,13 +139,13 @@ TEST_CASE("a camera that is moved is measured anew") {
     }
   };
   run({0.04, 0});
-  CHECK(measured.disagreements()[0].offset_m.x() == Approx(0.04));
+  CHECK(measured.pairs()[0].offset_m.x() == Approx(0.04));
   run({-0.02, 0});
-  CHECK(measured.disagreements()[0].offset_m.x() == Approx(-0.02));
+  CHECK(measured.pairs()[0].offset_m.x() == Approx(-0.02));
   CHECK(measured.correction_m(1).x() == Approx(0.01).margin(0.001));
   // Cameras that are metres apart must be calibrated: they see another robot, or another floor.
   run({1, 0});
-  CHECK(measured.disagreements()[0].offset_m.x() == Approx(-0.02));
+  CHECK(measured.pairs()[0].offset_m.x() == Approx(-0.02));
 }
 
 }  // namespace sidestep::camera_offsets_test

@@ -28,8 +28,13 @@ Scenario scenario_of(RobotId robots) {
 /// Two cameras over one robot. Each publishes detections that were captured 35 ms ago.
 class Cameras {
  public:
-  Cameras(Bus& bus, const TrueMotion& motion, Rng rng)
-      : bus_(bus), motion_(motion), rng_(rng), writer_(bus.advertise(topics::kDetections)) {
+  /// Each camera sees the robot off by this, in opposite directions.
+  Cameras(Bus& bus, const TrueMotion& motion, Rng rng, const Vec2& error_m = Vec2(0, 0))
+      : bus_(bus),
+        motion_(motion),
+        rng_(rng),
+        error_m_(error_m),
+        writer_(bus.advertise(topics::kDetections)) {
     bus_.at(kBegin + 40 * kMs, [this] { publish(); });
   }
 
@@ -38,7 +43,9 @@ class Cameras {
     const Time captured = bus_.now() - 35 * kMs;
     for (std::uint32_t camera = 0; camera < 2; ++camera) {
       msg::DetectionFrame frame = frame_message(camera, captured);
-      if (!rng_.chance(0.02)) add_noisy_robot(frame, 0, motion_.at(captured), {}, rng_);
+      Pose pose = motion_.at(captured);
+      pose.position_m += (camera == 0 ? -1 : 1) * error_m_;
+      if (!rng_.chance(0.02)) add_noisy_robot(frame, 0, pose, {}, rng_);
       writer_.publish(frame, bus_.now());
     }
     bus_.at(bus_.now() + kFrame, [this] { publish(); });
@@ -47,6 +54,7 @@ class Cameras {
   Bus& bus_;
   const TrueMotion& motion_;
   Rng rng_;
+  Vec2 error_m_;
   Writer<msg::DetectionFrame> writer_;
 };
 
@@ -109,6 +117,33 @@ TEST_CASE("world states remain usable when the network loses, delays, duplicates
     ++with_robot;
   }
   CHECK(with_robot > 150);
+}
+
+TEST_CASE("cameras that disagree are corrected by half each, and named with the disagreement") {
+  const double disagreement_m = GENERATE(0.01, 0.02, 0.04, 0.06);
+  CAPTURE(disagreement_m);
+  Rng rng(315);
+  const TrueMotion motion = TrueMotion::driving(rng, 12);
+  SimNetwork net(315, kBegin, {});
+  SimBus camera_bus(net), vision_bus(net), listener_bus(net);
+  double max_error_m = 0;
+  listener_bus.subscribe<msg::WorldState>(topics::kWorld, [&](const msg::WorldState& world) {
+    if (world.valid_at_ns() < to_ns(after_s(6)) || world.robots().empty()) return;
+    const auto& robot = world.robots()[0];
+    const Vec2 truth_m = motion.at(time_from_ns(robot.observed_at_ns())).position_m;
+    max_error_m = std::max(max_error_m, (observed_position_of(robot) - truth_m).norm());
+  });
+  Cameras cameras(camera_bus, motion, Rng(316), Vec2(disagreement_m / 2, 0));
+  VisionNode node(vision_bus, scenario_of(1), 77);
+  std::string text;
+  node.on_event(LogLevel::kInfo, [&](const LogEvent& event) {
+    if (event.text.find("disagree") != std::string::npos) text = event.text;
+  });
+  net.run_until(after_s(11));
+  CHECK(max_error_m < 0.01);
+  REQUIRE_THAT(text, ContainsSubstring("cameras 0 and 1 disagree by "));
+  const double printed_mm = std::stod(text.substr(std::string("cameras 0 and 1 disagree by ").size()));
+  CHECK(printed_mm == Approx(disagreement_m * 1e3).epsilon(0.1));
 }
 
 TEST_CASE("the same seed gives the same world states") {
