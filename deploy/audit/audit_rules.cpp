@@ -44,7 +44,7 @@ constexpr std::array<AuditRuleInfo, kAuditRules> kRules{{
     {"off-reference", "off reference",
      "a robot's own stop brakes to rest immediately and is numbered above all others"},
     {"tracking", "off reference",
-     "a robot that estimates itself beyond the tracking bound recovers within 25 ms or goes off reference"},
+     "a robot that estimates itself beyond the drift bound recovers within 25 ms or goes off reference"},
     {"position", "S-11", "a robot on its reference is within the margin of that reference"},
     {"contact", "the promise, S-08", "robots touch nothing"},
     {"crash", "opponents", "a robot is at rest before a moving object touches it"},

@@ -205,6 +205,7 @@ void AuditedRobot::reset() {
 void AuditedRobot::forget_times() {
   if (last_report) last_report->at_ns = kAlways;
   drifted_since_ns = beyond_bound_since_ns = kNever;
+  max_drift_m = 0;
   observation = {};
   for (KnownVersion& version : versions) {
     version.executed_until_ns = kAlways;

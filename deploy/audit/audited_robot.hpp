@@ -147,6 +147,8 @@ class AuditedRobot {
   /// Times since which all reports have stated a tracking error beyond the drift bound and beyond the
   /// tracking bound.
   std::int64_t drifted_since_ns = kNever, beyond_bound_since_ns = kNever;
+  /// The largest distance from the reference in the time that a robot may take to return since then.
+  double max_drift_m = 0;
 
   /// The latest registration.
   struct Registered {

@@ -311,11 +311,13 @@ TEST_CASE("after a robot's clock is set back, all times of the old clock are for
   robot.last_report.emplace().at_ns = 1000;
   robot.drifted_since_ns = 900;
   robot.beyond_bound_since_ns = 950;
+  robot.max_drift_m = 0.004;
   for (VersionNumber number = 1; number <= 3; ++number) robot.find_or_insert(number).executed_until_ns = 1000;
   robot.forget_times();
   CHECK(robot.last_report->at_ns == kAlways);
   CHECK(robot.drifted_since_ns == kNever);
   CHECK(robot.beyond_bound_since_ns == kNever);
+  CHECK(robot.max_drift_m == 0);
   for (const KnownVersion& known : robot.versions) CHECK(known.executed_until_ns == kAlways);
 }
 

@@ -269,7 +269,8 @@ std::vector<double> repeated(double error_m, int times) {
 }
 
 TEST_CASE(
-    "a robot must recover within 25 ms beyond the drift bound and within 1 ms beyond the tracking bound") {
+    "a robot must recover beyond the drift bound without moving away, and within 1 ms beyond the tracking "
+    "bound") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   const double drift_m = drift_bound_m(stage.scenario.tracking_bound_m) + 0.0005,
@@ -278,8 +279,24 @@ TEST_CASE(
   bool is_reported = false;
   SECTION("the robot is within the drift bound") { report_errors(stage, repeated(drift_m - 1e-6, 100)); }
   SECTION("the robot is 26 ms beyond the drift bound") { report_errors(stage, repeated(drift_m + 1e-6, 27)); }
-  SECTION("the robot is beyond the drift bound for 27 ms") {
-    report_errors(stage, repeated(drift_m + 1e-6, 28));
+  SECTION("the robot is beyond the drift bound for 27 ms and moves away") {
+    report_errors(stage, repeated(drift_m + 1e-6, 27));
+    report_errors(stage, {drift_m + 0.0005 + 3e-6});
+    is_reported = true;
+  }
+  SECTION("the robot moves away slowly, by less than the tolerance in each report") {
+    std::vector<double> errors_m = repeated(drift_m + 1e-6, 27);
+    for (int i = 0; i < 20; ++i) errors_m.push_back(errors_m.back() + 0.00004);
+    report_errors(stage, errors_m);
+    is_reported = true;
+  }
+  SECTION("the next check of the robot is late, and it does not move away meanwhile") {
+    report_errors(stage, repeated(drift_m + 0.0001, 27));
+    report_errors(stage, repeated(drift_m + 0.0004, 73));
+    report_errors(stage, {0});
+  }
+  SECTION("the robot never returns") {
+    report_errors(stage, repeated(drift_m + 1e-6, 102));
     is_reported = true;
   }
   SECTION("the robot is beyond the drift bound twice for 26 ms") {
