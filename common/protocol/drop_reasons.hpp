@@ -178,7 +178,9 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
     {DropReason::kUndatedLeagueFrame, "undated_league_frame",
      "frames of the league whose capture time cannot be determined yet", false},
     {DropReason::kUnusedLeagueDetection, "unused_league_detection",
-     "balls and obstacles beyond the capacity of a frame, and robots without a heading", false},
+     "balls and obstacles beyond the capacity of a frame, robots without a heading, and fast robots in "
+     "frames with an uncertain time",
+     false},
     {DropReason::kOtherLeagueSender, "other_league_sender",
      "packets of the league from senders that are not used, because another one is", true},
     {DropReason::kCommandLost, "command_lost", "commands lost by the simulated radio", false},

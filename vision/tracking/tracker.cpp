@@ -87,6 +87,7 @@ TrackerSettings tracker_settings(const Scenario& scenario) {
   settings.floor_obstacles = scenario.obstacles;
   settings.map = scenario.map;
   settings.robot_radius_m = scenario.radius_m;
+  settings.max_date_error_m = vision_error_bound_m(scenario.tracking_bound_m);
   return settings;
 }
 
@@ -114,6 +115,10 @@ void Tracker::update(const Frame& frame) {
       ++unknown_;
       continue;
     }
+    if (is_misplaced(frame, robots_[index].state())) {
+      ++misplaced_;
+      continue;
+    }
     const Observation observation{frame.captured_at(), frame.camera(), robot.position_m, robot.heading_rad,
                                   frame.date_uncertainty()};
     is_new |= robots_[index].add(observation, settings_.robot);
@@ -124,6 +129,15 @@ void Tracker::update(const Frame& frame) {
   }
   obstacles_.update(frame);
   frames_ += is_new ? 1 : 0;
+}
+
+bool Tracker::is_misplaced(const Frame& frame, const TrackState& robot) const {
+  // This much varies from frame to frame, and the filters of vision and robots average it out.
+  constexpr Duration kAveraged{3'000'000};
+  if (!robot.is_confirmed || frame.date_uncertainty() <= kAveraged) return false;
+  const double speed_mps = robot.filter.position.velocity().norm();
+  // The comparison is false for NaN.
+  return !(speed_mps * to_seconds(frame.date_uncertainty() - kAveraged) <= settings_.max_date_error_m);
 }
 
 void Tracker::set_min_noise(double position_noise_m) {
@@ -141,6 +155,7 @@ void Tracker::count_drops(DropCounters& drops) const {
   drops.count(DropReason::kMalformedFrame, std::nullopt, malformed_frames_);
   drops.count(DropReason::kMalformedDetection, std::nullopt, malformed_);
   drops.count(DropReason::kUnknownRobot, std::nullopt, unknown_);
+  drops.count(DropReason::kUnusedLeagueDetection, std::nullopt, misplaced_);
   drops.count(DropReason::kTooManyObstacles, std::nullopt, obstacles_.rejected());
   drops.count(DropReason::kFalseDetection, std::nullopt, ball_.rejected());
   for (std::size_t i = 0; i < robots_.size(); ++i)

@@ -20,6 +20,9 @@ struct TrackerSettings {
   TrackModel robot;
   TrackModel ball = ball_model();
   ObstacleTrackerSettings obstacles;
+  /// A robot's observation is not used if the uncertainty of its date may displace it by more. The robot then
+  /// navigates by its wheels, and slows down before its drift exceeds the tracking bound.
+  double max_date_error_m = vision_error_bound_m(SafetyBudget{}.tracking_bound_m);
   // The ball bounces off the field's walls, these obstacles, the map, and robots of this radius.
   Field field;
   std::vector<Shape> floor_obstacles;
@@ -57,6 +60,8 @@ class Tracker {
   void obstacles_at(const msg::WorldState& world, msg::ObstacleList& list);
 
  private:
+  /// Whether the date of the frame is too uncertain for the speed of the robot.
+  bool is_misplaced(const Frame& frame, const TrackState& robot) const;
   State ball_at(Time t, const msg::WorldState& world) const;
 
   static constexpr std::uint16_t kNotInRoster = kMaxRobots;
@@ -70,7 +75,7 @@ class Tracker {
   ObstacleTracker obstacles_;
   std::uint64_t frames_ = 0;
   // Number of detections that were not used, not counting those rejected by tracks.
-  std::uint64_t malformed_ = 0, unknown_ = 0, untimely_frames_ = 0, malformed_frames_ = 0;
+  std::uint64_t malformed_ = 0, unknown_ = 0, untimely_frames_ = 0, malformed_frames_ = 0, misplaced_ = 0;
 };
 
 }  // namespace sidestep

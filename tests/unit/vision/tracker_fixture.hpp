@@ -127,8 +127,8 @@ class TrackerFixture {
   explicit TrackerFixture(RobotId count, const TrackerSettings& settings = {})
       : tracker_(settings, roster(count)) {}
 
-  void feed(const msg::DetectionFrame& message, Time arrival) {
-    frame_.assign(message, arrival);
+  void feed(const msg::DetectionFrame& message, Time arrival, Duration date_uncertainty = Duration{0}) {
+    frame_.assign(message, arrival, kMaxFrameLead, date_uncertainty);
     tracker_.update(frame_);
   }
   /// The message arrives at its time of capture.

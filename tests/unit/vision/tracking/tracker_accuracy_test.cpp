@@ -177,4 +177,30 @@ TEST_CASE("a heading that wraps around at pi keeps its estimate and rate") {
   CHECK(fixture.rejected() == 0);
 }
 
+TEST_CASE("a frame with an uncertain date is used for robots at rest, but not for fast ones") {
+  TrackerFixture fixture(2);
+  Time t = kBegin;
+  const auto feed = [&](Duration date_uncertainty) {
+    msg::DetectionFrame frame = frame_message(0, t);
+    add_robot(frame, 0, {1, 0});
+    add_robot(frame, 1, {-4 + 2 * to_seconds(t - kBegin), 0});
+    fixture.feed(frame, t + kDelay, date_uncertainty);
+    t += kFrame;
+  };
+  for (int i = 0; i < 60; ++i) feed(3 * kMs);
+  const auto observed_at = [&](RobotId robot) {
+    const auto* const tracked = fixture.robot_at(robot, t + kDelay);
+    REQUIRE(tracked);
+    return tracked->observed_at_ns();
+  };
+  CHECK(observed_at(1) == to_ns(t - kFrame));
+  const std::uint64_t rejected = fixture.rejected();
+  feed(10 * kMs);
+  CHECK(observed_at(0) == to_ns(t - kFrame));
+  CHECK(observed_at(1) == to_ns(t - 2 * kFrame));
+  CHECK(fixture.rejected() == rejected + 1);
+  feed(3 * kMs);
+  CHECK(observed_at(1) == to_ns(t - kFrame));
+}
+
 }  // namespace sidestep::tracker_accuracy_test
