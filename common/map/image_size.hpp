@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <istream>
-
 #include "common/map/map_image.hpp"
 
 namespace sidestep {
 
-/// Throws MapImageError if an image has no pixels or is larger than a map may be.
+/// Throws ImageError if an image has no pixels or is larger than a map may be.
 void check_image_size(long columns, long rows);
 
 /// Sets a cell to the state that its pixel encodes.
@@ -17,8 +15,5 @@ inline void set_cell(ImageCells& cells, int column, int row, MapCellState state,
       (state == MapCellState::kUnknown && unknown == UnknownCells::kBlocked))
     cells.blocked.set(column, row);
 }
-
-/// The number of bytes from the current position of a file to its end.
-[[nodiscard]] long bytes_left(std::istream& file);
 
 }  // namespace sidestep

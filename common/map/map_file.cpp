@@ -96,7 +96,7 @@ ImageCells read_image(YamlMap& map, const std::string& path, const Interpretatio
   try {
     return read_map_image(
         image, [&](double brightness) { return interpretation.state(brightness); }, unknown);
-  } catch (const MapImageError& error) {
+  } catch (const ImageError& error) {
     location.fail(fmt::format("{}: {}", image, error.what()));
   }
 }

@@ -16,9 +16,9 @@ namespace sidestep {
 ImageCells read_map_image(const std::string& path, const StateOf& state_of, UnknownCells unknown_cells) {
   std::error_code unknown;
   if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
-    throw MapImageError("it is not a regular file");
+    throw ImageError("it is not a regular file");
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw MapImageError(fmt::format("cannot read it ({})", std::strerror(errno)));
+  if (!file) throw ImageError(fmt::format("cannot read it ({})", std::strerror(errno)));
   char magic[2] = {};
   file.read(magic, sizeof(magic));
   const std::string_view begin(magic, sizeof(magic));
@@ -26,7 +26,7 @@ ImageCells read_map_image(const std::string& path, const StateOf& state_of, Unkn
   file.seekg(0);
   if (begin == "P2" || begin == "P5") return read_pgm(file, state_of, unknown_cells);
   if (begin == "\x89P") return read_png(file, state_of, unknown_cells);
-  throw MapImageError("it is neither a PGM image (P2 or P5) nor a PNG image");
+  throw ImageError("it is neither a PGM image (P2 or P5) nor a PNG image");
 }
 
 }  // namespace sidestep

@@ -3,17 +3,12 @@
 
 #include <cstdint>
 #include <functional>
-#include <stdexcept>
 #include <string>
 
+#include "common/image/image_error.hpp"
 #include "common/map/bit_grid.hpp"
 
 namespace sidestep {
-
-/// Why an image cannot be used; what() does not name the file.
-class MapImageError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 enum class MapCellState : std::uint8_t { kFree, kOccupied, kUnknown };
 
@@ -31,7 +26,7 @@ struct ImageCells {
 
 /// Reads an image; its last row becomes row 0. Formats, recognised by their content: PGM (P2, P5; up to 16
 /// bits) and PNG (any kind; colours are averaged, and a pixel that is not opaque is unknown). Throws
-/// MapImageError if the file cannot be read, has neither format, is larger than a map may be, is truncated or
+/// ImageError if the file cannot be read, has neither format, is larger than a map may be, is truncated or
 /// damaged, or has a gamma other than sRGB's. As far as possible, this is checked before memory for the image
 /// is allocated.
 [[nodiscard]] ImageCells read_map_image(const std::string& path, const StateOf& state_of,

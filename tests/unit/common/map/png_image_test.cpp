@@ -65,7 +65,7 @@ std::string drawing(const std::string& png, double free_above) {
 std::string error_of(const std::string& png) {
   try {
     return drawing(png, 0.5);
-  } catch (const MapImageError& error) {
+  } catch (const ImageError& error) {
     return error.what();
   }
 }
