@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/view/camera_images.hpp"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "common/camera/camera_grid.hpp"
@@ -54,9 +53,7 @@ std::optional<std::string> CameraImages::jpeg(std::size_t camera, const FloorSta
     cv::putText(picture, std::to_string(id), centre + cv::Point(8, -8), cv::FONT_HERSHEY_SIMPLEX, 0.5,
                 {255, 255, 255}, 1, cv::LINE_AA);
   }
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", picture, bytes);
-  return std::string(bytes.begin(), bytes.end());
+  return jpeg_of(picture);
 }
 
 }  // namespace sidestep

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuzzes the reader of pictures that users give to vision. OpenCV, which
-// decodes them, is not instrumented.
+// Fuzzes the reader of pictures that users give to vision. libpng and TurboJPEG
+// are not instrumented. OpenCV makes the seeds.
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
