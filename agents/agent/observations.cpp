@@ -51,6 +51,7 @@ void Observations::on_world_state(const WorldObservations& world, Time now, bool
     return;
   }
   obstacles_.on_world_state(world);
+  if (captured_at >= last_fix_) is_seen_elsewhere_ = world.is_self_seen_elsewhere;
   if (captured_at <= last_fix_) return;
   fix_ = world.self;
   if (!is_robot_clock_known) return;
@@ -73,6 +74,7 @@ bool Observations::is_watched(Time now) const {
 
 WaitReason Observations::wait_reason(Time now) const {
   if (!is_seen(now)) return WaitReason::kNotSeen;
+  if (is_seen_elsewhere_) return WaitReason::kSeenElsewhere;
   if (laser_ && !is_recent(laser_->sight().captured_at(), now, kMaxFixAge, max_clock_difference_))
     return WaitReason::kNoScan;
   if (!laser_ &&

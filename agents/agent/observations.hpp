@@ -71,8 +71,9 @@ class Observations {
   std::optional<PoseFix> fix_;  // observed but not yet forwarded
   Time last_fix_{};
   Vec2 last_fix_m_{0, 0};
-  Time watched_until_{};       // last time at which the coordinator compared robots with their versions
-  std::uint64_t invalid_ = 0;  // number of observations from the future
+  bool is_seen_elsewhere_ = false;  // vision's latest observations of the robot agree on another place
+  Time watched_until_{};            // last time at which the coordinator compared robots with their versions
+  std::uint64_t invalid_ = 0;       // number of observations from the future
 };
 
 }  // namespace sidestep

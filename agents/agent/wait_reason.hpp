@@ -21,6 +21,7 @@ enum class WaitReason : std::uint8_t {
   kHeld,                 ///< an order holds the robot
   kNoOrder,              ///< the robot has no order
   kNotSeen,              ///< vision has lost the robot
+  kSeenElsewhere,        ///< vision's latest observations of the robot are elsewhere
   kNoScan,               ///< no laser scan has arrived recently
   kNoObstacleList,       ///< no complete list of obstacles has arrived recently
   kNotWatched,           ///< the coordinator has received no world state recently
@@ -58,6 +59,8 @@ constexpr const char* to_text(WaitReason reason) {
       return "an order";
     case WaitReason::kNotSeen:
       return "vision to see the robot";
+    case WaitReason::kSeenElsewhere:
+      return "vision, which sees the robot at another place";
     case WaitReason::kNoScan:
       return "a scan of the robot's laser";
     case WaitReason::kNoObstacleList:

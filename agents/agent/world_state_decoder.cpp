@@ -27,6 +27,7 @@ WorldObservations WorldStateDecoder::decode(const msg::WorldState& message) {
     if (fix.position_m.allFinite() && std::isfinite(fix.heading_rad) && position.allFinite()) {
       world.self = fix;
       world.self_m = position;
+      world.is_self_seen_elsewhere = self->is_seen_elsewhere();
     } else {
       ++invalid_;
     }

@@ -15,8 +15,9 @@ namespace sidestep {
 struct WorldObservations {
   Incarnation vision = 0;  ///< incarnation of the vision process
   Time valid_at{};
-  std::optional<PoseFix> self{};  ///< last observation of the robot itself
-  Vec2 self_m{0, 0};              ///< predicted position of the robot at valid_at
+  std::optional<PoseFix> self{};        ///< last observation of the robot itself
+  Vec2 self_m{0, 0};                    ///< predicted position of the robot at valid_at
+  bool is_self_seen_elsewhere = false;  ///< later observations agree on another place
 };
 
 /// Decodes untrusted world states for the agent of one robot. Other robots' entries are not decoded, because

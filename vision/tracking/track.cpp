@@ -146,6 +146,11 @@ TrackState advanced(const TrackState& state, const Observation& observation, con
   return next;
 }
 
+// An observation that continues the track discards the candidate.
+bool is_seen_elsewhere(const TrackState& state, const TrackModel& model) {
+  return state.is_confirmed && state.candidate_hits >= model.displaced_hits;
+}
+
 std::optional<Estimate> estimate_at(const TrackState& state, Time t, const TrackModel& model) {
   const Duration gap = t - state.last.captured_at;
   if (!state.is_confirmed || gap > model.drop_after) return std::nullopt;

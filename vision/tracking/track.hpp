@@ -73,6 +73,10 @@ struct TrackState {
 [[nodiscard]] TrackState advanced(const TrackState& state, const Observation& observation,
                                   const TrackModel& model);
 
+/// Whether the latest consistent observations of a confirmed track are elsewhere: the robot may have been
+/// displaced, or its camera mistakes another object for it.
+[[nodiscard]] bool is_seen_elsewhere(const TrackState& state, const TrackModel& model);
+
 /// The estimate at a time; nullopt if the track is not confirmed or was last observed too long ago.
 [[nodiscard]] std::optional<Estimate> estimate_at(const TrackState& state, Time t, const TrackModel& model);
 

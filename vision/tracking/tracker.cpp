@@ -171,6 +171,7 @@ void Tracker::world_at(Time t, msg::WorldState& world) const {
       msg::TrackedRobot& robot = world.robots()[count++];
       robot.robot(roster_[i]);
       fill(robot, *estimate, state.last);
+      robot.is_seen_elsewhere(is_seen_elsewhere(state, settings_.robot));
     }
   }
   world.robots().resize(count);

@@ -44,6 +44,10 @@ TEST_CASE("a world state's time and the robot's own observation are decoded unch
   CHECK(world.self->heading_rad == 0.5);
   CHECK(world.valid_at == time_from_ns(5000));
   CHECK(world.self_m == Vec2(0.875, -0.75));
+  CHECK_FALSE(world.is_self_seen_elsewhere);
+  msg::WorldState doubtful = valid_world();
+  doubtful.robots()[1].is_seen_elsewhere(true);
+  CHECK(decoder.decode(doubtful).is_self_seen_elsewhere);
   CHECK(decoder.invalid() == 0);
 }
 

@@ -139,6 +139,28 @@ TEST_CASE("a robot that was carried away is soon tracked at its new position") {
   CHECK((position_of(*fixture.robot_at(0, after_s(1.3))) - Vec2(3, 2)).norm() < 0.01);
 }
 
+TEST_CASE("from the second frame on, a robot that was put elsewhere is published as seen elsewhere") {
+  Rng rng(95);
+  TrackerFixture fixture(1);
+  feed_at_rest(fixture, {1, 1}, 0, 1, rng);
+  CHECK_FALSE(fixture.robot_at(0, after_s(1))->is_seen_elsewhere());
+  const auto feed = [&](double at_s, const Vec2& at_m) {
+    msg::DetectionFrame frame = frame_message(0, after_s(at_s));
+    add_noisy_robot(frame, 0, {at_m, {0, 0}, 0}, {}, rng);
+    fixture.feed(frame);
+    return fixture.robot_at(0, after_s(at_s))->is_seen_elsewhere();
+  };
+  CHECK_FALSE(feed(1.02, {3, 2}));
+  CHECK(feed(1.04, {3, 2}));
+  SECTION("until its track moves there") {
+    double at_s = 1.06;
+    while (at_s < 1.4 && feed(at_s, {3, 2})) at_s += 0.02;
+    CHECK(at_s < 1.3);
+    CHECK((position_of(*fixture.robot_at(0, after_s(at_s))) - Vec2(3, 2)).norm() < 0.01);
+  }
+  SECTION("until it is observed at its own place again") { CHECK_FALSE(feed(1.06, {1, 1})); }
+}
+
 TEST_CASE("a robot that was rotated on the spot is tracked again") {
   Rng rng(92);
   TrackerFixture fixture(1);
