@@ -110,8 +110,10 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
     covariance_(2, 2) = settings_.scale_error * settings_.scale_error;
     decorrelate_scale();
   }
+  // A robot that was displaced may have been turned by any angle.
+  const double heading_gain = jump_m_ > 0 ? 1 : kHeadingGain;
   heading_anchor_rad_ = wrapped_rad(heading_anchor_rad_ +
-                                    kHeadingGain * wrapped_rad(heading_rad - heading_anchor_rad_ - turned));
+                                    heading_gain * wrapped_rad(heading_rad - heading_anchor_rad_ - turned));
   return true;
 }
 

@@ -135,4 +135,19 @@ TEST_CASE("a single outlier moves the estimate only slightly") {
   CHECK((run.estimator.position_m() - run.position(run.now)).norm() < 0.003);
 }
 
+TEST_CASE("two fixes of a robot that was put elsewhere give it its new place and heading") {
+  PoseEstimator estimator({1, 0}, 0.2, kBegin, {0.01, 0.005, 0.0015});
+  Time now = kBegin;
+  const auto rest_until = [&](Time until) {
+    for (; now < until; now += kPeriod) estimator.advance(now + kPeriod, {}, {0, 0}, 0);
+  };
+  for (int i = 1; i <= 2; ++i) {
+    rest_until(kBegin + i * milliseconds(17));
+    REQUIRE(estimator.correct(now - milliseconds(5), {-2, 1}, 2.5));
+  }
+  CHECK(estimator.jump_m() > 3);
+  CHECK((estimator.position_m() - Vec2(-2, 1)).norm() < 0.01);
+  CHECK(wrapped_rad(estimator.heading_rad() - 2.5) == Approx(0).margin(0.01));
+}
+
 }  // namespace sidestep::pose_estimator_test
