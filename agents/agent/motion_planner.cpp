@@ -6,6 +6,7 @@
 #include "agents/agent/planning_distances.hpp"
 #include "agents/agent/sight_motion.hpp"
 #include "agents/navigation/trapezoidal_profile.hpp"
+#include "agents/safety/creeping.hpp"
 
 namespace sidestep {
 namespace {
@@ -140,6 +141,7 @@ std::optional<MotionPlan> MotionPlanner::follow_intent(const Query& query, const
     update_corners({at_start, query.start, intent.waypoint_m, motion.is_creeping}, *laser, query.now);
   } else {
     desired = follow(followed, max_speed);
+    search.creep_mps = kCreep_mps;
     search.moving = seen.obstacles().recent(query.now, query.max_lag);
     search.seen = seen.obstacles().seen(query.now, query.max_lag);
   }

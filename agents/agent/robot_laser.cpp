@@ -2,13 +2,13 @@
 #include "agents/agent/robot_laser.hpp"
 
 #include "agents/agent/planning_distances.hpp"
+#include "agents/safety/creeping.hpp"
 #include "common/time/clock_bounds.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr double kMaxHeadingError_rad = 0.02;  ///< bound of the error of a scan's heading
-constexpr double kCreep_mps = 0.03;            ///< a slower robot counts as being at rest
 
 /// The position of a robot at a time, which may be shortly before its version starts.
 Vec2 position_at(const Trajectory& trajectory, Time t) {

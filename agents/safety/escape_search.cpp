@@ -73,7 +73,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
       return;
     result.checks += static_cast<int>(surroundings.others.size());
     if (!uncontrolled.allow(trajectory, min_separation_m, rules.limits.deceleration_mps2)) return;
-    if (!is_passively_safe_from_all(trajectory, query.moving, min_separation_m)) return;
+    if (!is_passively_safe_from_all(trajectory, query.moving, min_separation_m, query.creep_mps)) return;
     if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) return;
     if (!is_passively_safe_from_hidden(trajectory, query.hidden, min_separation_m)) return;
     if (check_workspace_with_escape(candidate, base.trajectory, rules) != Validity::kValid) return;

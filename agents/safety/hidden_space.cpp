@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "agents/safety/creeping.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -36,25 +38,10 @@ double HiddenSpace::distance_m(const Vec2& p, Time t) const {
   return nearest_m(p, closed_gaps, kTouching_m, open_m) - turned_m;
 }
 
-namespace {
-
-bool creeps_away(const Trajectory& trajectory, const HiddenSpace& hidden) {
-  State state = trajectory.at_start();
-  double fastest_mps = state.velocity_mps.norm();
-  for (const MotionPhase& phase : trajectory.phases()) {
-    state = state_after(state, phase.acceleration_mps2, to_seconds(phase.duration));
-    fastest_mps = std::max(fastest_mps, state.velocity_mps.norm());
-  }
-  return fastest_mps <= hidden.creep_mps &&
-         hidden.distance_m(state.position_m, trajectory.start()) >
-             hidden.distance_m(trajectory.at_start().position_m, trajectory.start());
-}
-
-}  // namespace
-
 bool is_passively_safe_from_hidden(const Trajectory& trajectory, const HiddenSpace& hidden,
                                    double min_separation_m) {
-  if (hidden.is_nothing() || creeps_away(trajectory, hidden)) return true;
+  const auto distance_m = [&](const Vec2& p) { return hidden.distance_m(p, trajectory.start()); };
+  if (hidden.is_nothing() || creeps_away(trajectory, hidden.creep_mps, distance_m)) return true;
   Time t = trajectory.start();
   State state = trajectory.at_start();
   const double separation_m = min_separation_m + kRounding_m;

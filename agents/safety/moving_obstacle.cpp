@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "agents/safety/creeping.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -75,9 +77,11 @@ bool is_passively_safe(const Trajectory& trajectory, const MovingObstacle& obsta
 }
 
 bool is_passively_safe_from_all(const Trajectory& trajectory, std::span<const MovingObstacle> obstacles,
-                                double min_separation_m) {
+                                double min_separation_m, double creep_mps) {
   return std::ranges::all_of(obstacles, [&](const MovingObstacle& obstacle) {
-    return is_passively_safe(trajectory, obstacle, min_separation_m);
+    const auto distance_m = [&](const Vec2& p) { return (p - obstacle.position_m).norm(); };
+    return is_passively_safe(trajectory, obstacle, min_separation_m) ||
+           creeps_away(trajectory, creep_mps, distance_m);
   });
 }
 

@@ -31,8 +31,10 @@ struct MovingObstacle {
 /// 1981).
 [[nodiscard]] bool is_passively_safe(const Trajectory& trajectory, const MovingObstacle& obstacle,
                                      double min_separation_m);
+/// Whether the robot is at rest before any of the obstacles could reach it, or creeps away from those that
+/// could; see creeping.hpp. With a `creep_mps` of 0 it may not creep.
 [[nodiscard]] bool is_passively_safe_from_all(const Trajectory& trajectory,
                                               std::span<const MovingObstacle> obstacles,
-                                              double min_separation_m);
+                                              double min_separation_m, double creep_mps = 0);
 
 }  // namespace sidestep

@@ -99,7 +99,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
                              limits.deceleration_mps2);
     if (!is_allowed(trajectory, candidates_.is_certainly_clear(*index))) continue;
     if (!uncontrolled.allow(trajectory, min_separation_m, limits.deceleration_mps2)) continue;
-    if (!is_passively_safe_from_all(trajectory, moving_, min_separation_m)) continue;
+    if (!is_passively_safe_from_all(trajectory, moving_, min_separation_m, query.creep_mps)) continue;
     if (!is_passively_safe_from_unseen(trajectory, query.seen, min_separation_m)) continue;
     if (!is_passively_safe_from_hidden(trajectory, hidden, min_separation_m)) continue;
     if (!keep_out_.allows(trajectory)) continue;

@@ -35,6 +35,7 @@ struct SearchQuery {
   /// Maximum speed, below the robot's speed limit if the clocks require it. A robot that is already faster
   /// slows down.
   double max_speed_mps = std::numeric_limits<double>::infinity();
+  double creep_mps = 0;  ///< a robot that is no faster counts as being at rest
   SeenRegion seen{};     ///< region in which there are no obstacles except the obstacles in `moving`
   HiddenSpace hidden{};  ///< floor that the robot's laser did not see
   std::span<const Shape> keep_outs{};  ///< zones that the robot must not enter

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "tests/catch.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
@@ -111,6 +113,36 @@ TEST_CASE("an obstacle observed after the trajectory starts may have been elsewh
   const MovingObstacle obstacle{{-0.3, 0}, 0.05, kBegin + from_seconds(0.2), 1};
   CHECK_FALSE(is_passively_safe(braking, obstacle, 0.1));
   CHECK(is_passively_safe(braking, {{-0.3, 0}, 0.05, kBegin, 1}, 0.1));
+}
+
+//   A r B    strangers A and B beside the robot r
+TEST_CASE(
+    "a robot within reach of strangers may creep away from all of them, but neither fast nor towards one") {
+  constexpr double kSeparation_m = 0.1;
+  const MovingObstacle left{{-0.25, 0}, 0.09, kBegin, 1.5}, right{{0.25, 0}, 0.09, kBegin, 1.5};
+  const std::vector<MovingObstacle> one{left}, two{left, right};
+  const auto motion = [](const Vec2& velocity_mps) {
+    Trajectory moving(kBegin + Duration{100'000'000}, {{0, 0}, velocity_mps});
+    moving.append(Duration{20'000'000}, {0, 0});
+    append_stop(moving, 5);
+    return moving;
+  };
+  const auto is_safe = [&](const Vec2& velocity_mps, const std::vector<MovingObstacle>& strangers,
+                           double creep_mps = 0.03) {
+    return is_passively_safe_from_all(motion(velocity_mps), strangers, kSeparation_m, creep_mps);
+  };
+  CHECK(is_safe({0.03, 0}, one));
+  CHECK_FALSE(is_safe({0.031, 0}, one));
+  CHECK_FALSE(is_safe({-0.03, 0}, one));
+  CHECK_FALSE(is_safe({-0.001, 0.02}, one));
+  CHECK_FALSE(is_safe({0.03, 0}, one, 0));
+  CHECK_FALSE(is_safe({0, 0}, one));
+  CHECK_FALSE(is_safe({0.03, 0}, two));
+  CHECK(is_safe({0, 0.03}, two));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(is_safe({nan, 0}, one));
+  CHECK_FALSE(is_safe({0.03, 0}, one, nan));
+  CHECK_FALSE(is_safe({0.03, 0}, {{{nan, 0}, 0.09, kBegin, 1.5}}));
 }
 
 }  // namespace sidestep::moving_obstacle_test
