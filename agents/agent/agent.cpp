@@ -107,13 +107,18 @@ std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
   return negotiation_.propose({result.candidates.data(), result.count}, plan.base, now, plan.intent);
 }
 
-bool Agent::needs_rest_version(Time now) const {
-  return placement_m_ && negotiation_.is_absent() && negotiation_.may_propose(now);
-}
-
-Proposal Agent::propose_rest_version(Time now, Time start) {
-  const Trajectory rest = Trajectory::resting(start, *placement_m_);
-  return negotiation_.propose({&rest, 1}, 0, now);
+std::optional<Proposal> Agent::propose_rest_version(Time now, Time start) {
+  if (!negotiation_.may_propose(now)) return std::nullopt;
+  const auto rest_at = [&](const Vec2& place_m, VersionNumber base) {
+    const Trajectory rest = Trajectory::resting(start, place_m);
+    return negotiation_.propose({&rest, 1}, base, now);
+  };
+  if (negotiation_.is_absent()) return placement_m_ ? std::optional(rest_at(*placement_m_, 0)) : std::nullopt;
+  const Version& base = negotiation_.held().base_at(start);
+  const bool may_end = base.inflation_m > 0 && observations_.wait_reason(now) == WaitReason::kNone &&
+                       observations_.may_end_inflation(base, start);
+  if (!may_end || assignment().is_held()) return std::nullopt;
+  return rest_at(base.trajectory.rest_position_m(), base.number);
 }
 
 bool Agent::is_at_rest(Time now) const {

@@ -99,10 +99,10 @@ class Agent {
   WaitReason wait_reason(Time now) const;
   AgentActivity activity(Time now) const;
 
-  /// Whether the robot is off the floor and a rest version may be proposed where it will be put down.
-  bool needs_rest_version(Time now) const;
-  /// Proposes a rest version where the robot will be put down. Precondition: needs_rest_version().
-  [[nodiscard]] Proposal propose_rest_version(Time now, Time start);
+  /// Proposes to rest from `start` on: where a lifted robot will be put down, or where a robot rests after
+  /// its own stop, so that the stop's inflation ends, whether it has an order or not. Returns nullopt if the
+  /// robot needs no such version or may not propose it.
+  [[nodiscard]] std::optional<Proposal> propose_rest_version(Time now, Time start);
 
   /// The command of this cycle. It fences the robot, forwards the latest observation, and repeats a granted
   /// version until that version starts.

@@ -273,10 +273,7 @@ void AgentNode::negotiate_if_time() {
 
 void AgentNode::negotiate(Time start) {
   if (!agent_.may_propose(robot_now()) || !update_clocks()) return;
-  if (agent_.needs_rest_version(robot_now())) {
-    publish_proposal(agent_.propose_rest_version(robot_now(), start));
-    return;
-  }
+  if (const auto rest = agent_.propose_rest_version(robot_now(), start)) return publish_proposal(*rest);
   const double max_speed_mps = clocks_.max_speed_mps(bus_.now());
   const Duration max_lag = clocks_.max_lag(bus_.now());
   const auto plan =

@@ -51,9 +51,7 @@ std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
   passage_.update(query.now, query.observations, query.assignment, route_, query.rng);
   // Inflation ends only when the robot is at rest. If the robot drove on with inflation, it might never fit
   // through narrow places.
-  const bool keeps_inflation =
-      base.inflation_m > 0 && !query.observations.may_end_inflation(base, query.start);
-  if (keeps_inflation || query.start <= base.trajectory.start()) return std::nullopt;
+  if (base.inflation_m > 0 || query.start <= base.trajectory.start()) return std::nullopt;
   const Vec2 target = target_m(query);
   const std::optional<Route> route = find_route(query, target);
   if (!route) return std::nullopt;

@@ -211,15 +211,60 @@ TEST_CASE("an inflated robot waits until it is at rest and vision agrees with it
   displaced.executing.trajectory = Trajectory::resting(at_s(0.9), {0, 0});
   displaced.is_off_reference = true;
   d.agent.on_robot_report(displaced);
+  const auto rest = [&](double now) { return d.agent.propose_rest_version(at_s(now), at_s(now + kCycle_s)); };
   // If the robot drove on, the inflation would remain, and the robot might never fit through narrow places.
   d.observe(0, 0.85, 1.01);  // captured before the robot rested
+  CHECK_FALSE(rest(1.02));
   CHECK_FALSE(d.plans(1.02));
   d.observe(0.04, 1.02, 1.03);  // the robot has not received this observation yet
-  CHECK_FALSE(d.plans(1.04));
+  CHECK_FALSE(rest(1.04));
   displaced.valid_at = at_s(1.05);
   displaced.estimate.position_m = {0.039, 0};
   d.agent.on_robot_report(displaced);
-  CHECK(d.plans(1.06));
+  CHECK_FALSE(d.plans(1.06));
+  const auto proposal = rest(1.06);
+  REQUIRE(proposal);
+  REQUIRE(proposal->candidate_count == 1);
+  CHECK(proposal->candidates[0]->base == 50);
+  CHECK(proposal->candidates[0]->inflation_m == 0);
+  CHECK(proposal->candidates[0]->trajectory.phases().empty());
+}
+
+TEST_CASE("the inflation of a robot without an order ends too, but a held robot proposes nothing") {
+  const bool is_held = GENERATE(false, true);
+  CAPTURE(is_held);
+  Scenario scenario = two_goals();
+  scenario.robots.front().goals.clear();
+  Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
+  agent.on_robot_report(resting_at({0, 0}, 0.5));
+  become_ready(agent, 0.6, 0.6);
+  if (is_held) {
+    const RememberedOrder hold{{msg::OrderKind::ORDER_HOLD, 3, static_cast<ClientId>(Sender::kOperator), 2}};
+    agent.on_orders(std::make_shared<OrderPage>(
+        OrderPage{static_cast<std::uint32_t>(Sender::kCoordinator), true, 0, 1, {hold}}));
+  }
+  RobotReport displaced = resting_at({0, 0}, 0.7);
+  displaced.executing = {3, 0, 50, 0, Trajectory::resting(at_s(0.65), {0, 0}), 1.0};
+  displaced.is_off_reference = true;
+  agent.on_robot_report(displaced);
+  agent.on_world_state(observation(0, 0.7), at_s(0.71));
+  agent.on_obstacles(empty_list(0.7), at_s(0.71));
+  CHECK(agent.propose_rest_version(at_s(0.72), at_s(0.72 + kCycle_s)).has_value() == !is_held);
+}
+
+TEST_CASE("a robot that vision's latest observations show elsewhere is not driven until they agree again") {
+  DrivenAgent d;
+  d.observe(0, 0.6, 0.61);
+  CHECK(d.plans(0.62));
+  WorldObservations doubtful = observation(0, 0.6);
+  doubtful.is_self_seen_elsewhere = true;
+  d.agent.on_world_state(doubtful, at_s(0.63));
+  CHECK_FALSE(d.plans(0.64));
+  CHECK(d.agent.wait_reason(at_s(0.64)) == WaitReason::kSeenElsewhere);
+  d.agent.on_world_state(observation(0, 0.5), at_s(0.64));  // overtaken
+  CHECK_FALSE(d.plans(0.64));
+  d.observe(0, 0.65, 0.66);
+  CHECK(d.plans(0.67));
 }
 
 TEST_CASE("each own stop of the robot counts once as a loss of its reference") {
