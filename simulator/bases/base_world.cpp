@@ -51,6 +51,7 @@ BaseWorld::BaseWorld(const Scenario& scenario, std::uint32_t team_size, const Ba
       time_(begin),
       controls_(floor_.robots.size(), BaseControl(settings)),
       pushed_at_(floor_.robots.size(), Time::min()),
+      placed_at_(floor_.robots.size()),
       contacts_(scenario.obstacles, scenario.map, scenario.radius_m, BaseControl::kMaxSpeed_mps),
       speeds_mps_(floor_.robots.size()) {
   for (const RobotSpec& robot : floor_.robots) {
@@ -71,6 +72,7 @@ std::optional<std::size_t> BaseWorld::find(Team team, std::uint32_t number) cons
 void BaseWorld::place(std::size_t robot, const Vec2& position_m, double heading_rad) {
   bodies_[robot] = Body(position_m, heading_rad, body_settings(settings_));
   controls_[robot].reset();
+  placed_at_[robot] = time_;
   contacts_.invalidate_near_pairs();
 }
 
@@ -181,7 +183,7 @@ void BaseWorld::fill(msg::GroundTruth& truth) const {
     robot.vx_mps(body.velocity_mps().x());
     robot.vy_mps(body.velocity_mps().y());
     robot.reference_error_m(-1);
-    robot.disturbance_end_ns(-1);
+    robot.disturbance_end_ns(placed_at_[i] ? to_ns(*placed_at_[i]) : -1);
     truth.robots().push_back(robot);
   }
 }

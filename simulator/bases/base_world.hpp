@@ -35,6 +35,7 @@ class BaseWorld {
   void command(std::size_t robot, const BaseVelocity& velocity, Time now) {
     controls_[robot].command(velocity, now);
   }
+  /// Puts a robot elsewhere, at rest. Ground truth reports it as disturbed at that time.
   void place(std::size_t robot, const Vec2& position_m, double heading_rad);
   void remove(std::size_t robot);
   void set_ball(const State& state);
@@ -61,7 +62,8 @@ class BaseWorld {
   Time time_;
   std::vector<Body> bodies_;
   std::vector<BaseControl> controls_;
-  std::vector<Time> pushed_at_;  ///< time at which an opponent last touched each robot
+  std::vector<Time> pushed_at_;                 ///< time at which an opponent last touched each robot
+  std::vector<std::optional<Time>> placed_at_;  ///< time at which each robot was last put elsewhere
   std::optional<Ball> ball_;
   Contacts contacts_;
   std::uint64_t seen_contacts_ = 0;

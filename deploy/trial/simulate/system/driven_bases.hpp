@@ -32,9 +32,12 @@ class DrivenBases {
   DrivenBases(Bus& bus, const Scenario& scenario, Duration latency, Incarnation incarnation,
               std::uint64_t seed);
 
+  /// Puts a base elsewhere, at rest; neither the robot nor its odometry notices it.
+  void place(RobotId robot, const Vec2& position_m, double heading_rad);
   void on_event(LogLevel min_level, const OnLogEvent& callback);
 
  private:
+  const Scenario scenario_;
   TemporaryFolder memory_;
   VelocityRobotSimNode bases_;
   DirectDriver driver_;

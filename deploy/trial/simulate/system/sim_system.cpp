@@ -81,6 +81,7 @@ struct SimSystem::Process {
   RulesExchange rules;
   std::optional<RoleWatch> role;
   std::shared_ptr<void> node;
+  DrivenBases* bases = nullptr;                      // the node, if it is that
   std::function<void(LogLevel, OnLogEvent)> listen;  // sets the callback for the node's events
 };
 
@@ -157,7 +158,9 @@ void SimSystem::start(const std::string& name) {
     const auto scratch = &scenario == &scenario_ ? scratch_ : std::make_shared<PlanningScratch>(scenario);
     process->run(std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch));
   } else if (first_process(name) == "simulator" && base_latency_) {
-    process->run(std::make_shared<DrivenBases>(bus, scenario, *base_latency_, incarnation, seed_));
+    auto bases = std::make_shared<DrivenBases>(bus, scenario, *base_latency_, incarnation, seed_);
+    process->bases = bases.get();
+    process->run(std::move(bases));
   } else if (first_process(name) == "simulator") {
     process->run(std::make_shared<SimulatorProcess>(bus, scenario, incarnation, seed_));
   } else if (first_process(name) == "vision") {
@@ -205,6 +208,10 @@ void SimSystem::on_event(LogLevel min_level, OnProcessEvent callback) {
 
 void SimSystem::kill(const std::string& process) {
   if (processes_.erase(process) > 0) metrics_.on_death(process, "signal 9 (SIGKILL)", now(), false);
+}
+
+void SimSystem::place(RobotId robot, const Vec2& position_m, double heading_rad) {
+  processes_.at("simulator")->bases->place(robot, position_m, heading_rad);
 }
 
 void SimSystem::pause(const std::string& process, Duration duration, std::size_t max_queued) {

@@ -68,6 +68,9 @@ class SimSystem {
     disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     disturbance_writer_.publish(disturbance, now());
   }
+  /// Puts a driven base elsewhere, at rest, as a simulator's operator does. Precondition: `base_latency` was
+  /// set, and the simulator is alive.
+  void place(RobotId robot, const Vec2& position_m, double heading_rad);
   /// Publishes a client's order.
   void send(const Order& order);
   /// Calls back with every answer of a coordinator to an order, and with every status of an order.
