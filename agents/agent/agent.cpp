@@ -23,6 +23,7 @@ Agent::Agent(const FloorSpec& floor, RobotId robot, Incarnation incarnation,
       orders_(floor, robot_),
       planner_(floor, robot_, *scratch_),
       search_(*scratch_),
+      strangers_(scratch_->rules),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)) {}
 
 bool Agent::on_robot_report(const RobotReport& robot_report) {
@@ -102,7 +103,11 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
 std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
   const Version& base = negotiation_.held().base_at(plan.query.start);
   const SearchResult result = search_.find(plan.query, base, observations_.neighbours(), rng_);
-  planner_.on_search(plan, result.desired_is_clear, now);
+  strangers_.update(plan.query, result.desired_is_clear && !search_.is_creeping(), now);
+  // A robot that creeps, or waits for a stranger at its goal, is not in a deadlock with other robots.
+  const Goal* goal = assignment().goal();
+  const bool waits = goal && strangers_.is_at(goal->position_m);
+  planner_.on_search(plan, result.desired_is_clear || waits, now);
   if (result.count == 0) return std::nullopt;
   return negotiation_.propose({result.candidates.data(), result.count}, plan.base, now, plan.intent);
 }
@@ -140,12 +145,15 @@ AgentActivity Agent::activity(Time now) const {
   return {negotiation_.is_fenced(),     negotiation_.is_superseded(), negotiation_.incarnation(),
           negotiation_.is_registered(), negotiation_.epoch(),         wait_reason(now),
           assignment().goal_index(),    orders_.has_arrived(),        planner_.is_recovering(),
-          search_.is_escaping()};
+          search_.is_escaping(),        strangers_.lasting()};
 }
 
 OrderReport Agent::order_report() const {
   OrderReport report = assignment().report();
-  if (assignment().goal()) report.blockage = planner_.lasting_blockage();
+  if (!assignment().goal()) return report;
+  report.blockage = planner_.lasting_blockage();
+  const bool has_cause = report.blockage && report.blockage->reason != msg::BlockReason::BLOCK_NO_PATH;
+  if (const auto stranger = strangers_.lasting(); stranger && !has_cause) report.blockage = stranger;
   return report;
 }
 

@@ -12,6 +12,7 @@
 #include "agents/agent/order_execution.hpp"
 #include "agents/agent/planning_scratch.hpp"
 #include "agents/agent/proposal_search.hpp"
+#include "agents/agent/stranger_watch.hpp"
 #include "common/config/scenario.hpp"
 #include "common/protocol/drop_counters.hpp"
 
@@ -53,7 +54,10 @@ class Agent {
   void on_orders(std::shared_ptr<const OrderPage> page);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
   /// Closes the cycle that ends now: abandons this agent's proposals that have no verdict yet.
-  void close_cycle(Time now) { negotiation_.close_cycle(now); }
+  void close_cycle(Time now) {
+    negotiation_.close_cycle(now);
+    strangers_.close_cycle(now);
+  }
 
   /// Proposes no more motions, so the robot brakes along the version that it has.
   void stop() { is_stopping_ = true; }
@@ -117,6 +121,7 @@ class Agent {
   OrderReport order_report() const;
   /// Estimated time to reach all remaining goals; nullopt: unknown.
   std::optional<double> remaining_s() const {
+    if (strangers_.lasting()) return std::nullopt;
     return planner_.remaining_s(assignment(), orders_.has_arrived());
   }
 
@@ -138,6 +143,7 @@ class Agent {
   OrderExecution orders_;
   MotionPlanner planner_;
   ProposalSearch search_;
+  StrangerWatch strangers_;
   Rng rng_;
   std::optional<Version> forwarded_;  // granted version that has not started yet
   bool is_stopping_ = false;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "common/messaging/blockage_text.hpp"
 #include "common/messaging/enumerator.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/reason_text.hpp"
@@ -55,8 +56,13 @@ void AgentEventLogger::report_motion(const AgentActivity& activity, Time now) {
     events_.report(LogLevel::kInfo, robot_, "arrived at goal {}, the last goal", activity.goal_index);
   if (activity.is_escaping && !last_.is_escaping && may_report(escape_reported_at_, now))
     events_.report(LogLevel::kInfo, robot_, "escaping from a conflict: no candidate has full clearance");
-  if (activity.is_recovering && !last_.is_recovering && may_report(recovery_reported_at_, now))
+  // A robot beside a stranger turns too, but that is not why it stands.
+  const bool is_in_deadlock = activity.is_recovering && !activity.stranger;
+  if (is_in_deadlock && !was_in_deadlock_ && may_report(recovery_reported_at_, now))
     events_.report(LogLevel::kInfo, robot_, "blocked: turning right to resolve the deadlock");
+  was_in_deadlock_ = is_in_deadlock;
+  if (activity.stranger && !last_.stranger && may_report(stranger_reported_at_, now))
+    events_.report(LogLevel::kInfo, robot_, "blocked: {}", to_text(*activity.stranger));
 }
 
 void AgentEventLogger::report_wait(WaitReason reason, Time now) {

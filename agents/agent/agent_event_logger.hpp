@@ -7,6 +7,7 @@
 #include "agents/agent/wait_reason.hpp"
 #include "common/log/log_event.hpp"
 #include "common/protocol/negotiation_messages.hpp"
+#include "common/protocol/order.hpp"
 #include "common/protocol/robot_messages.hpp"
 #include "common/time/clock_offset.hpp"
 
@@ -24,6 +25,7 @@ struct AgentActivity {
   bool has_arrived = false;  ///< the robot is at rest at its last goal
   bool is_recovering = false;
   bool is_escaping = false;
+  std::optional<Blockage> stranger;  ///< the stranger that keeps the robot from driving
 };
 
 /// The speed limit that results from clock uncertainty, and the offset that causes it.
@@ -69,7 +71,8 @@ class AgentEventLogger {
   std::optional<Time> limited_since_, limit_reported_at_;
   double reported_limit_mps_ = 0;
   // State for reports about motion.
-  std::optional<Time> escape_reported_at_, recovery_reported_at_;
+  std::optional<Time> escape_reported_at_, recovery_reported_at_, stranger_reported_at_;
+  bool was_in_deadlock_ = false;
   // State from the robot's reports.
   Time latest_report_{};
   Incarnation robot_incarnation_ = 0;

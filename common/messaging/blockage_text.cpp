@@ -18,6 +18,9 @@ std::string cause(const Blockage& blockage) {
       return fmt::format("zone {} covers its goal", blockage.blocker);
     case msg::BlockReason::BLOCK_OCCLUDED_CORNER:
       return "a person may step out from behind the corner at " + place(blockage.blocker_m);
+    case msg::BlockReason::BLOCK_STRANGER:
+      return fmt::format("a stranger {:.2f} m away, who may move at {:.1f} m/s",
+                         (blockage.blocker_m - blockage.nearest_m).norm(), blockage.blocker_speed_mps);
     case msg::BlockReason::BLOCK_NONE:
     case msg::BlockReason::BLOCK_NO_PATH:
       break;
@@ -28,6 +31,7 @@ std::string cause(const Blockage& blockage) {
 }  // namespace
 
 std::string to_text(const Blockage& blockage) {
+  if (blockage.reason == msg::BlockReason::BLOCK_STRANGER) return cause(blockage);
   return cause(blockage) + "; it goes to " + place(blockage.nearest_m) + " instead";
 }
 

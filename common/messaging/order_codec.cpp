@@ -2,6 +2,7 @@
 #include "common/messaging/order_codec.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -184,9 +185,10 @@ std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now) {
 std::optional<OrderReport> decode(const msg::OrderStatus& message) {
   const bool is_valid = message.robot() < kMaxRobots && message.header().sender() == message.robot() &&
                         is_enumerator(message.order_state(), msg::OrderState::ORDER_LEFT) &&
-                        is_enumerator(message.block_reason(), msg::BlockReason::BLOCK_OCCLUDED_CORNER) &&
+                        is_enumerator(message.block_reason(), msg::BlockReason::BLOCK_STRANGER) &&
                         is_on_floor(message.blocker_x_m(), message.blocker_y_m()) &&
                         is_on_floor(message.nearest_x_m(), message.nearest_y_m()) &&
+                        std::isfinite(message.blocker_speed_mps()) && message.blocker_speed_mps() >= 0 &&
                         is_name_of(message.client_name(), message.client()) &&
                         message.remaining_s() <= kMaxRemaining_s;
   const bool is_blocked = message.order_state() == msg::OrderState::ORDER_BLOCKED;
@@ -202,7 +204,8 @@ std::optional<OrderReport> decode(const msg::OrderStatus& message) {
     report.blockage = Blockage{message.block_reason(),
                                message.blocker(),
                                {message.blocker_x_m(), message.blocker_y_m()},
-                               {message.nearest_x_m(), message.nearest_y_m()}};
+                               {message.nearest_x_m(), message.nearest_y_m()},
+                               message.blocker_speed_mps()};
   }
   if (message.remaining_s() >= 0) report.remaining_s = message.remaining_s();
   report.client_name = message.client_name();
@@ -225,6 +228,7 @@ msg::OrderStatus encode(const OrderReport& report) {
     message.blocker_y_m(report.blockage->blocker_m.y());
     message.nearest_x_m(report.blockage->nearest_m.x());
     message.nearest_y_m(report.blockage->nearest_m.y());
+    message.blocker_speed_mps(report.blockage->blocker_speed_mps);
   }
   message.remaining_s(std::min(report.remaining_s.value_or(-1), kMaxRemaining_s));
   message.client_name(report.client_name);

@@ -69,7 +69,8 @@ struct Blockage {
   msg::BlockReason reason = msg::BlockReason::BLOCK_NO_PATH;
   std::uint32_t blocker = 0;  ///< number of the blocking robot or zone
   Vec2 blocker_m{0, 0};       ///< position of the blocking obstacle or robot
-  Vec2 nearest_m{0, 0};       ///< position that the robot goes to instead
+  Vec2 nearest_m{0, 0};       ///< position that the robot goes to instead; if a stranger blocks it, its own
+  double blocker_speed_mps = 0;  ///< maximum speed of a stranger
 };
 
 struct RememberedOrder {

@@ -177,4 +177,16 @@ TEST_CASE("denials are counted by reason and reported at most once per second, a
   for (const LogEvent& event : f.events.all()) CHECK(event.level == LogLevel::kDebug);
 }
 
+TEST_CASE("a robot that a stranger keeps from driving is not reported as in a deadlock") {
+  Fixture f;
+  f.activity.stranger = Blockage{msg::BlockReason::BLOCK_STRANGER, 0, {0.25, 0}, {0, 0}, 1.5};
+  f.activity.is_recovering = true;
+  f.run(3s);
+  CHECK(f.events.count("blocked: a stranger 0.25 m away, who may move at 1.5 m/s") == 1);
+  CHECK(f.events.count("deadlock") == 0);
+  f.activity.stranger.reset();
+  f.run(3s);
+  CHECK(f.events.count("blocked: turning right to resolve the deadlock") == 1);
+}
+
 }  // namespace sidestep::agent_event_logger_test

@@ -267,6 +267,33 @@ TEST_CASE("a robot that vision's latest observations show elsewhere is not drive
   CHECK(d.plans(0.67));
 }
 
+TEST_CASE("a robot beside a stranger creeps away, and its order's status names the stranger") {
+  DrivenAgent d;
+  int proposals = 0;
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    const double now = 0.62 + cycle * kCycle_s;
+    d.agent.close_cycle(at_s(now));
+    d.agent.on_robot_report(resting_at({0, 0}, now - 0.01));
+    d.observe_obstacle(0.25, 0, now - 0.04, now - 0.01);
+    const auto plan = d.agent.plan(at_s(now), at_s(now + kCycle_s), kUnlimited_mps, kNoLag);
+    REQUIRE(plan);
+    const auto proposal = d.agent.search(*plan, at_s(now));
+    if (!proposal) continue;
+    ++proposals;
+    for (std::size_t i = 0; i < proposal->candidate_count; ++i) {
+      const Trajectory& motion = proposal->candidates[i]->trajectory;
+      CHECK(motion.state_at(motion.start() + motion.phases().front().duration).velocity_mps.norm() <= 0.03);
+      CHECK(motion.rest_position_m().x() < 0);
+    }
+  }
+  CHECK(proposals > 0);
+  const OrderReport report = d.agent.order_report();
+  REQUIRE(report.blockage);
+  CHECK(report.blockage->reason == msg::BlockReason::BLOCK_STRANGER);
+  CHECK(report.blockage->blocker_speed_mps == 1.5);
+  CHECK_FALSE(d.agent.remaining_s());
+}
+
 TEST_CASE("each own stop of the robot counts once as a loss of its reference") {
   DrivenAgent d;
   RobotReport stopped = resting_at({0, 0}, 1);

@@ -16,6 +16,8 @@ TEST_CASE("the text about a blockage states its cause") {
   CHECK(text(msg::BlockReason::BLOCK_NO_PATH) == "no path leads to its goal" + instead);
   CHECK(text(msg::BlockReason::BLOCK_OCCLUDED_CORNER) ==
         "a person may step out from behind the corner at 1.23,-2.00" + instead);
+  CHECK(to_text(Blockage{msg::BlockReason::BLOCK_STRANGER, 0, {1, 2}, {1, 2.25}, 1.5}) ==
+        "a stranger 0.25 m away, who may move at 1.5 m/s");
 }
 
 }  // namespace sidestep::blockage_text_test
