@@ -25,6 +25,7 @@
 #include "deploy/run/launch/run_command.hpp"
 #include "deploy/run/order/order_command.hpp"
 #include "deploy/run/order/referee_command.hpp"
+#include "deploy/run/place/league_command.hpp"
 #include "deploy/trial/camera/frame_command.hpp"
 #include "deploy/trial/camera/pattern_command.hpp"
 #include "deploy/trial/conformance/conformance_command.hpp"
@@ -112,6 +113,7 @@ int main(int argc, char** argv) {
   add_keys_command(app, action);
   add_conformance_command(app, action);
   add_referee_command(app, action);
+  add_league_command(app, action);
   add_audit_command(app, action);
   add_report_command(app, action);
   add_monitor_command(app, action);

@@ -2,7 +2,6 @@
 #include "deploy/run/launch/floor_processes.hpp"
 
 #include <iterator>
-#include <optional>
 #include <sstream>
 
 #include "common/league/multicast.hpp"
@@ -22,6 +21,13 @@ std::optional<std::string> value_of(const std::string& name, const std::vector<s
     if (*word == name) return std::next(word) == arguments.end() ? "" : *std::next(word);
   }
   return std::nullopt;
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> values;
+  std::istringstream stream(text);
+  for (std::string value; std::getline(stream, value, ',');) values.push_back(value);
+  return values;
 }
 
 }  // namespace
@@ -46,6 +52,16 @@ FloorProcess vision_process(const FloorOptions& options) {
     arguments.insert(arguments.begin(), {"--ssl-vision", league::kSimulatedVisionEndpoint});
   if (!source) arguments.insert(arguments.begin(), {"--source", "ssl"});
   return {"vision", "sidestep-vision", arguments};
+}
+
+PlaceOptions place_options_of(const FloorOptions& options) {
+  const std::vector<std::string> vision = vision_process(options).arguments;
+  PlaceOptions placing;
+  placing.control = options.placing_control.value();
+  if (const auto group = value_of("--ssl-vision", vision)) placing.vision = *group;
+  placing.interfaces = split_list(value_of("--league-interface", vision).value_or(""));
+  placing.senders = split_list(value_of("--league-sender", vision).value_or(""));
+  return placing;
 }
 
 std::vector<std::string> driver_names() { return {"league", "velocity", "skeleton"}; }

@@ -65,6 +65,15 @@ int check_domain(const DdsSettings& dds) {
   });
 }
 
+/// Places the robots in a process of its own, for the same reason. Returns 0, or prints an error and returns
+/// its exit code.
+int place_robots(const Scenario& scenario, const FloorOptions& floor) {
+  return run_separately([&] {
+    return run_and_report_errors("sidestep run",
+                                 [&] { return place_floor(scenario, place_options_of(floor)); });
+  });
+}
+
 }  // namespace
 
 int run(const RunOptions& given) {
@@ -103,6 +112,9 @@ int run(const RunOptions& given) {
     require_free_port(*options.monitor_port);
   }
   if (const int exit_code = check_domain(options.dds); exit_code != 0) return exit_code;
+  if (options.floor.placing_control) {
+    if (const int exit_code = place_robots(scenario, options.floor); exit_code != 0) return exit_code;
+  }
   if (options.report_file.empty()) {
     // Another run of the scenario may start in the same second.
     log_path = create_new_file(log_path);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
 #include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
@@ -10,6 +12,7 @@
 #include "common/process/log_option.hpp"
 #include "common/process/process.hpp"
 #include "deploy/run/launch/run.hpp"
+#include "deploy/run/place/place_floor.hpp"
 
 namespace sidestep {
 namespace {
@@ -17,6 +20,15 @@ namespace {
 void require_port(const std::string& text) {
   const std::string problem = in_whole_range(1, 65535).problem(text);
   if (!problem.empty()) throw UsageError("--monitor: " + problem);
+}
+
+void require_placeable(const FloorOptions& floor) {
+  if (floor.driver != "league") throw UsageError("--place requires --driver league");
+  try {
+    (void)league::parse_unicast_endpoint(*floor.placing_control);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--place: ") + error.what());
+  }
 }
 
 }  // namespace
@@ -85,8 +97,15 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .add_option("--hosts", options->hosts_file,
                   "hosts file, see " + page_path("deploy/run/launch/README.md"))
       .excludes(command.option("--interface"));
+  command
+      .add_optional_value("--place", options->floor.placing_control, kLeagueControlEndpoint,
+                          "with --driver league: first place robots and ball by the control port of the "
+                          "simulator, at this ADDRESS:PORT")
+      .needs(command.option("--driver"))
+      .excludes(command.option("--hosts"));
   command.on_parsed([options, &action] {
     if (options->monitor_port) require_port(*options->monitor_port);
+    if (options->floor.placing_control) require_placeable(options->floor);
     action = [options] { return run(*options); };
   });
 }

@@ -37,4 +37,19 @@ TEST_CASE("other drivers get only the options that are given for vision") {
   CHECK(vision_arguments("", "").empty());
 }
 
+TEST_CASE("robots are placed by the vision packets that vision receives") {
+  FloorOptions options;
+  options.driver = "league";
+  options.placing_control = "127.0.0.1:10300";
+  CHECK(place_options_of(options).vision == "224.5.23.2:10020");
+  CHECK(place_options_of(options).interfaces.empty());
+  options.vision =
+      "--ssl-vision=224.5.23.2:10006 --league-interface 127.0.0.1,10.0.0.2 --league-sender 10.0.0.7";
+  const PlaceOptions placing = place_options_of(options);
+  CHECK(placing.control == "127.0.0.1:10300");
+  CHECK(placing.vision == "224.5.23.2:10006");
+  CHECK(placing.interfaces == Words{"127.0.0.1", "10.0.0.2"});
+  CHECK(placing.senders == Words{"10.0.0.7"});
+}
+
 }  // namespace sidestep::floor_processes_test
