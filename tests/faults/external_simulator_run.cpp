@@ -7,16 +7,28 @@
 #include "tests/catch.hpp"
 
 namespace sidestep {
+namespace {
+
+const std::string kRobots = "--robots=";
+
+}  // namespace
 
 ExternalSimulatorRun::ExternalSimulatorRun(const std::string& scenario,
                                            const std::vector<std::string>& simulator_options,
                                            const std::vector<std::string>& run_options, bool has_truth)
     : simulator_options_(simulator_options), has_truth_(has_truth) {
-  std::vector<std::string> options{
-      "--driver", "league",
-      fmt::format("--robots=--latency-ms 119 --blue {} --yellow {}", to_text(blue()), to_text(yellow())),
-      fmt::format("--vision=--source ssl --ssl-vision {}", endpoints_.text(0))};
-  options.insert(options.end(), run_options.begin(), run_options.end());
+  std::string driver = "--latency-ms 119";
+  std::vector<std::string> options;
+  for (const std::string& option : run_options) {
+    if (option.starts_with(kRobots))
+      driver = option.substr(kRobots.size());
+    else
+      options.push_back(option == "--place" ? "--place=" + to_text(control()) : option);
+  }
+  options.insert(options.begin(), {"--driver", "league",
+                                   fmt::format("{}{} --blue {} --yellow {}", kRobots, driver, to_text(blue()),
+                                               to_text(yellow())),
+                                   fmt::format("--vision=--source ssl --ssl-vision {}", endpoints_.text(0))});
   run_ = std::make_unique<LaunchedRun>(scenario, options);
   start_simulator();
 }
