@@ -136,9 +136,9 @@ std::string LaunchedRun::output() const { return text_of(folder_ / "launcher.log
 
 bool LaunchedRun::printed(const std::string& text) const { return output().find(text) != std::string::npos; }
 
-bool LaunchedRun::logged(const std::string& text) const {
-  return text_of(folder_ / "report.log").find(text) != std::string::npos;
-}
+std::string LaunchedRun::log() const { return text_of(folder_ / "report.log"); }
+
+bool LaunchedRun::logged(const std::string& text) const { return log().find(text) != std::string::npos; }
 
 std::map<std::string, pid_t> LaunchedRun::children() const {
   // Lines such as "run: started agent 3 again as pid 1234".

@@ -72,6 +72,8 @@ class LaunchedRun {
   bool printed(const std::string& text) const;
   /// Whether a process of the run has printed this text.
   bool logged(const std::string& text) const;
+  /// What the processes of the run have printed.
+  std::string log() const;
   std::string output() const;
 
   DdsBus& bus() { return *bus_; }
