@@ -10,6 +10,8 @@
 
 namespace sidestep {
 
+inline Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
+
 /// State shared by all steps.
 struct ConformanceContext {
   const Scenario& scenario;

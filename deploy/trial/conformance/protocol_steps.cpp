@@ -21,8 +21,6 @@ constexpr Duration kReportTime = 100ms;
 // Pause between the robot's refusal and the next attempt.
 constexpr Duration kPause = 50ms;
 
-Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
-
 double ms(Duration duration) { return to_seconds(duration) * 1e3; }
 
 /// A version that accelerates gently from rest, and stops within a centimetre.

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/conformance/conformance_step.hpp"
+
+namespace sidestep {
+
+std::vector<std::unique_ptr<ConformanceStep>> conformance_steps(const Scenario& scenario) {
+  std::vector<std::unique_ptr<ConformanceStep>> steps;
+  steps.push_back(make_reports_step());
+  steps.push_back(make_clock_step());
+  steps.push_back(make_new_agent_step());
+  steps.push_back(make_fence_step());
+  steps.push_back(make_switch_step());
+  steps.push_back(make_versions_step());
+  steps.push_back(make_rest_step());
+  steps.push_back(make_latency_step());
+  steps.push_back(make_tracking_step(scenario));
+  steps.push_back(make_lost_commands_step());
+  steps.push_back(make_braking_step(scenario));
+  steps.push_back(make_takeover_step());
+  steps.push_back(make_own_stop_step());
+  return steps;
+}
+
+}  // namespace sidestep
