@@ -19,7 +19,6 @@ constexpr double kPositionGain_ps = 4;
 /// Maximum speed that is added to the reference's speed to return to it.
 constexpr double kMaxCorrection_mps = 0.3;
 constexpr double kHeadingGain_ps = 4;
-constexpr double kTurningSpeed_radps = 3;
 
 using std::chrono::milliseconds;
 
@@ -239,7 +238,8 @@ BodyVelocity DrivenRobot::track(Time now) const {
   const Vec2 velocity_mps = planned_mps + limited(Vec2(kPositionGain_ps * error_m), kMaxCorrection_mps);
   BodyVelocity command;
   double heading_error = wrapped_rad(target_heading_rad_ - pose.heading_rad);
-  command.turn_radps = std::clamp(kHeadingGain_ps * heading_error, -kTurningSpeed_radps, kTurningSpeed_radps);
+  command.turn_radps =
+      std::clamp(kHeadingGain_ps * heading_error, -settings_.turn_radps, settings_.turn_radps);
   const double middle_rad = pose.heading_rad + 0.5 * command.turn_radps * to_seconds(kPeriod);
   command.linear_mps = rotated(Vec2(velocity_mps / (1 - estimator_.scale_error())), -middle_rad);
   return command;

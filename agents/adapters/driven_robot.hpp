@@ -24,6 +24,8 @@ struct DriveSettings {
   double fix_noise_m = 0.0005;  ///< standard deviation of vision's position error, on each axis
   /// Standard deviation of the relative error of a base's odometry.
   double scale_error = 0.005;
+  /// Maximum speed at which the robot turns. It is predicted, so the base must be able to turn as fast.
+  double turn_radps = 3;
 };
 
 DriveSettings drive_settings(const Scenario& scenario, Duration latency);

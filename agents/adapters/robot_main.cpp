@@ -26,6 +26,7 @@ struct Options {
   std::string robots = "all";
   std::string memory_folder = default_memory_folder();
   double latency_ms = 100;
+  double turn_radps = DriveSettings{}.turn_radps;
   BasesBusOptions bases;
   std::string blue = "127.0.0.1:10301", yellow = "127.0.0.1:10302";
 };
@@ -40,6 +41,10 @@ void add_options(const CliCommand& app, Options& options) {
       .show_default();
   app.add_option("--latency-ms", options.latency_ms, "time from a command until the base moves accordingly")
       .check(in_range(0, static_cast<double>(to_seconds(CommandedMotion::kMaxLatency) * 1e3)))
+      .show_default();
+  app.add_option("--turn-speed", options.turn_radps,
+                 "speed at which robots turn, rad/s; bases must be able to turn as fast")
+      .check(in_range(0.1, 20))
       .show_default();
   app.add_option("--memory", options.memory_folder,
                  "folder for the robots' memories, which must survive restarts of this program")
@@ -68,13 +73,18 @@ std::unique_ptr<Driver> make_driver(DdsBus& bus, Bus* bases, const Scenario& sce
   return driver;
 }
 
+DriveSettings settings_of(const Scenario& scenario, const Options& options) {
+  DriveSettings settings = drive_settings(scenario, from_seconds(options.latency_ms * 1e-3));
+  settings.turn_radps = options.turn_radps;
+  return settings;
+}
+
 struct Nodes {
   Nodes(DdsBus& bus, const Scenario& scenario, Incarnation incarnation, const Options& options)
       : robots(select_robots(scenario, options.robots)),
         bases(options.driver == "velocity" ? bases_bus(bus, options.bases) : nullptr),
         driver(make_driver(bus, bases.get(), scenario, robots, options)),
-        node(bus, scenario, robots, incarnation,
-             drive_settings(scenario, from_seconds(options.latency_ms * 1e-3)), *driver,
+        node(bus, scenario, robots, incarnation, settings_of(scenario, options), *driver,
              options.memory_folder) {
     if (const auto* skeleton = dynamic_cast<const SkeletonDriver*>(driver.get()))
       camera.emplace(bus, scenario, robots, *skeleton, incarnation);
