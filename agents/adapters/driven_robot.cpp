@@ -19,6 +19,12 @@ constexpr double kPositionGain_ps = 4;
 /// Maximum speed that is added to the reference's speed to return to it.
 constexpr double kMaxCorrection_mps = 0.3;
 constexpr double kHeadingGain_ps = 4;
+/// Maximum product of speed and turning speed. A base whose velocity follows its commands a few hundredths of
+/// a second late drives in the direction of an earlier heading, so a fast turn at full speed would take it
+/// tens of millimetres off its reference.
+constexpr double kMaxTurnTimesSpeed_mps2 = 1;
+/// A base follows its turning speed at once if that changes no faster.
+constexpr double kTurnAcceleration_radps2 = 20;
 
 using std::chrono::milliseconds;
 
@@ -237,9 +243,13 @@ BodyVelocity DrivenRobot::track(Time now) const {
   if (planned_mps.isZero(0) && error_m.norm() < kRestTolerance_m) error_m.setZero();
   const Vec2 velocity_mps = planned_mps + limited(Vec2(kPositionGain_ps * error_m), kMaxCorrection_mps);
   BodyVelocity command;
-  double heading_error = wrapped_rad(target_heading_rad_ - pose.heading_rad);
-  command.turn_radps =
-      std::clamp(kHeadingGain_ps * heading_error, -settings_.turn_radps, settings_.turn_radps);
+  const double heading_error = wrapped_rad(target_heading_rad_ - pose.heading_rad);
+  const double max_radps =
+      std::min(settings_.turn_radps, kMaxTurnTimesSpeed_mps2 / std::max(planned_mps.norm(), 1e-3));
+  const double turn_radps = std::clamp(kHeadingGain_ps * heading_error, -max_radps, max_radps);
+  const double last_radps = commands_.latest().turn_radps;
+  const double change_radps = kTurnAcceleration_radps2 * to_seconds(kPeriod);
+  command.turn_radps = std::clamp(turn_radps, last_radps - change_radps, last_radps + change_radps);
   const double middle_rad = pose.heading_rad + 0.5 * command.turn_radps * to_seconds(kPeriod);
   command.linear_mps = rotated(Vec2(velocity_mps / (1 - estimator_.scale_error())), -middle_rad);
   return command;
