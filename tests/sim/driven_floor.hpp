@@ -33,15 +33,19 @@ class DrivenFloor {
  public:
   DrivenFloor(SimNetwork& network, const Scenario& scenario, const BaseSettings& bases, Duration latency,
               std::uint64_t seed, std::function<void(msg::Command&)> defect = {})
+      : DrivenFloor(network, scenario, bases, drive_settings(scenario, latency), seed, std::move(defect)) {}
+  DrivenFloor(SimNetwork& network, const Scenario& scenario, const BaseSettings& bases,
+              const DriveSettings& drive, std::uint64_t seed, std::function<void(msg::Command&)> defect = {})
       : floor_bus_(network),
         robots_bus_(network, std::move(defect)),
         bases_(floor_bus_, scenario, {.bases = bases}, 1, seed),
         driver_(bases_, scenario),
-        robots_(robots_bus_, scenario, roster_of(scenario), 1, drive_settings(scenario, latency), driver_,
-                memory_.path()) {}
+        robots_(robots_bus_, scenario, roster_of(scenario), 1, drive, driver_, memory_.path()) {}
 
   BaseWorld& world() { return bases_.world_now(); }
   RobotDriverNode& robots() { return robots_; }
+  /// Stops the process that drives the robots, as if by SIGSTOP; commands are lost until then.
+  void pause_robots(Time until) { robots_bus_.pause(until, 1000); }
 
  private:
   TemporaryFolder memory_;

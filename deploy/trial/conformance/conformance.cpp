@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 namespace sidestep {
 namespace {
@@ -12,13 +13,15 @@ constexpr int kAttempts = 3;
 
 }  // namespace
 
-Conformance::Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation)
+Conformance::Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
+                         ConformanceSettings settings)
     : bus_(bus),
       scenario_(scenario),
+      settings_(std::move(settings)),
       probe_(bus, scenario_, robot, incarnation),
       stream_(probe_, scenario_),
-      context_{scenario_, probe_, stream_, report_},
-      steps_(conformance_steps(scenario_)) {
+      context_{scenario_, settings_, probe_, stream_, report_},
+      steps_(conformance_steps(scenario_, settings_)) {
   bus.at(bus.now(), [this] { cycle(); });
 }
 
@@ -40,7 +43,7 @@ void Conformance::end_step() {
   if (is_repeated) {
     ++attempt_;
     report_ = before_step_;
-    steps_[step_] = std::move(conformance_steps(scenario_)[step_]);
+    steps_[step_] = std::move(conformance_steps(scenario_, settings_)[step_]);
     return;
   }
   const bool has_failed = !rows.empty() && rows.back().conformity != Conformity::kPassed;

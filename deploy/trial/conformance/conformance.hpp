@@ -17,7 +17,8 @@ namespace sidestep {
 class Conformance {
  public:
   /// Precondition: the scenario contains the robot.
-  Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
+  Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
+              ConformanceSettings settings = {});
   Conformance(const Conformance&) = delete;
   Conformance& operator=(const Conformance&) = delete;
 
@@ -33,6 +34,7 @@ class Conformance {
 
   Bus& bus_;
   const Scenario scenario_;
+  const ConformanceSettings settings_;
   RobotProbe probe_;
   VersionStream stream_;
   ConformanceReport report_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/conformance/conformance_command.hpp"
 
+#include <csignal>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
@@ -36,6 +37,7 @@ struct ConformanceOptions {
   std::string scenario_file;
   std::string driver = kRunning;
   FloorOptions floor;
+  double silence_m = ConformanceSettings{}.max_silence_m;
   DdsSettings dds;
 };
 
@@ -72,11 +74,20 @@ class Floor {
       argv.insert(argv.end(), process.arguments.begin(), process.arguments.end());
       group_.start({process.name, argv, false});
     }
+    driver_ = robots_process(floor).name;
   }
-  ~Floor() { (void)group_.terminate(3000ms); }
+  ~Floor() {
+    if (is_driver_stopped_) stop_driver(false);
+    (void)group_.terminate(3000ms);
+  }
   Floor(const Floor&) = delete;
   Floor& operator=(const Floor&) = delete;
 
+  /// Stops the process that drives the robot, or lets it go on.
+  void stop_driver(bool is_stopped) {
+    is_driver_stopped_ = is_stopped;
+    (void)group_.send_signal(driver_, is_stopped ? SIGSTOP : SIGCONT);
+  }
   /// What the processes have logged since the last call and the user is to know.
   std::vector<std::string> notices() { return notices_.next(); }
 
@@ -93,7 +104,15 @@ class Floor {
   TemporaryFolder folder_;
   ProcessGroup group_;
   LogNotices notices_;
+  std::string driver_;  ///< the name of the process that moves the robot
+  bool is_driver_stopped_ = false;
 };
+
+/// Whether the robot is moved by a process of ours and seen without it. The template's process is also the
+/// camera.
+bool can_stop_driver(const std::string& driver) {
+  return driver != kRunning && driver != kSimulator && driver != "skeleton";
+}
 
 int examine(const ConformanceOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
@@ -111,7 +130,11 @@ int examine(const ConformanceOptions& options) {
     fmt::print(stderr, "{}\n", describe(mismatch));
   });
   Floor floor(options);
-  const Conformance conformance(bus, scenario, robot.id, next_incarnation(0, bus.now()));
+  ConformanceSettings settings;
+  settings.max_silence_m = options.silence_m;
+  if (can_stop_driver(options.driver))
+    settings.stop_driver = [&floor](bool is_stopped) { floor.stop_driver(is_stopped); };
+  const Conformance conformance(bus, scenario, robot.id, next_incarnation(0, bus.now()), settings);
   const bool has_activity = terminal_of(STDERR_FILENO).can_redraw;
   std::size_t printed = 0;
   std::string activity;
@@ -134,7 +157,7 @@ int examine(const ConformanceOptions& options) {
   }
   if (has_activity) print_to(stderr, "{}", kEraseLine);
   if (is_interrupted) return kExitNotJudged;
-  print_output("{}", scenario_lines(conformance.report().figures));
+  print_output("{}", scenario_lines(conformance.report()));
   if (conformance.report().is_conformant()) return 0;
   return conformance.report().has_failed() ? kExitFailure : kExitNotJudged;
 }
@@ -163,6 +186,12 @@ void add_conformance_command(const CliCommand& root, std::function<int()>& actio
                      "extra options for sidestep-robot, e.g. --robots=\"--latency-ms 120\"");
   command.add_option("--vision", options->floor.vision, "extra options for sidestep-vision");
   command.add_option("--simulator", options->floor.simulator, "extra options for sidestep-simulator");
+  command
+      .add_option("--silence-m", options->silence_m,
+                  "how far beyond the stop of its version the robot may come to rest if commands end at full "
+                  "speed, as when sidestep-robot is killed")
+      .check(in_range(0, 10))
+      .show_default();
   add_dds_options(command, options->dds);
   command.on_parsed([options, &action] { action = [options] { return examine(*options); }; });
 }

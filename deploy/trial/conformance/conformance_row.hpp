@@ -23,6 +23,10 @@ struct ConformanceRow {
 struct RobotFigures {
   std::optional<double> tracking_bound_m;
   std::optional<double> clock_bound_s;
+  std::optional<Duration> latency;   ///< from a command until the robot moves accordingly
+  std::optional<double> turn_radps;  ///< the fastest turn that vision saw, downwards in steps of 0.1
+  /// Maximum distance from the stop of its version, if commands end at the speed limit without a stop.
+  std::optional<double> silence_m;
   MotionLimits limits;
   bool is_within_limits = false;  ///< the robot braked and moved within its limits
 };
@@ -37,14 +41,23 @@ struct ConformanceReport {
   bool has_failed() const;
 };
 
-/// The row "latency": the motors obey by `late` later than the robot assumes, which is `lead`. If they seem
-/// to obey before the command, vision's dates are wrong, and nothing is judged or printed.
-ConformanceRow latency_row(Duration lead, Duration late, bool is_allowed);
+/// When the robot's motors obey.
+struct MeasuredLatency {
+  Duration lead{0};         ///< the latency that the robot assumes
+  Duration late{0};         ///< how much later the motors obey: the best estimate
+  Duration uncertainty{0};  ///< maximum error of `late`, with a probability of about 95 %
+  double speed_mps = 0;     ///< the speed limit
+};
+
+/// The row "latency". It passes if the robot's error from a change of velocity by the speed limit is at most
+/// `max_error_m`. If the motors seem to obey before the command, vision's dates are wrong, and nothing is
+/// judged or printed.
+ConformanceRow latency_row(const MeasuredLatency& measured, double max_error_m);
 
 /// The row as one line of text.
 std::string to_line(const ConformanceRow& row);
-/// The lines to put into the scenario file.
-std::string scenario_lines(const RobotFigures& figures);
+/// The lines to put into the scenario file, if every row passed; otherwise the rows that did not.
+std::string scenario_lines(const ConformanceReport& report);
 /// The complete result as text.
 std::string to_text(const ConformanceReport& report);
 

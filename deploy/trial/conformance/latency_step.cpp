@@ -2,8 +2,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
-#include <vector>
 
+#include "deploy/trial/conformance/latency_fit.hpp"
 #include "deploy/trial/conformance/motion_examination.hpp"
 
 namespace sidestep {
@@ -17,7 +17,6 @@ constexpr int kStarts = 8, kMaxStarts = 24;
 constexpr std::size_t kMinStartSamples = 10;
 // The part of each start that is evaluated: later, the robot's control corrects for the latency.
 constexpr Duration kStartBegin = 20ms, kStartEnd = 200ms;
-constexpr Duration kMaxLate = 150ms;
 
 /// Starts from rest repeatedly. How far the robot is then behind its reference shows how late its motors
 /// respond, compared with what the robot assumes.
@@ -42,8 +41,9 @@ class LatencyStep final : public ConformanceStep {
       has_begun_ = true;
       context.stream.stop();
     }
+    keep_report(context);
     if (!start_ && !context.stream.is_at_rest() && now - *since_ < 2 * kDriveTimeout) return false;
-    if (starts_ < kStarts || (samples_.size() < kMinStartSamples && starts_ < kMaxStarts)) {
+    if (starts_ < kStarts || (fit_.observations() < kMinStartSamples && starts_ < kMaxStarts)) {
       start(context);
       return false;
     }
@@ -66,6 +66,7 @@ class LatencyStep final : public ConformanceStep {
     trajectory.append(250ms, 0.8 * context.scenario.limits.acceleration_mps2 * direction);
     append_stop(trajectory, context.scenario.limits.deceleration_mps2);
     start_ = context.stream.next(trajectory);
+    fit_.begin_start(trajectory);
     probe.version = start_;
     rest_error_sum_m_ = Vec2(0, 0);
     before_count_ = 0;
@@ -82,34 +83,24 @@ class LatencyStep final : public ConformanceStep {
     }
     const bool is_executed = sample.reference.state.velocity_mps.norm() > 0 && !sample.is_off_reference;
     if (after < kStartBegin || after > kStartEnd || before_count_ == 0 || !is_executed) return;
-    samples_.push_back({start_->trajectory, robot_at, sample.seen_m - rest_error_sum_m_ / before_count_});
-  }
-
-  /// The delay with which the reference fits the observations best.
-  Duration measured_late() const {
-    Duration best{0};
-    double least = INFINITY;
-    for (Duration late = -kMaxLate; late <= kMaxLate; late += 500us) {
-      double sum = 0;
-      for (const Start& start : samples_)
-        sum += (start.seen_m - start.trajectory.state_at(start.at - late).position_m).squaredNorm();
-      if (sum < least) least = sum, best = late;
-    }
-    return best;
+    fit_.add(robot_at, sample.seen_m - rest_error_sum_m_ / before_count_);
   }
 
   void add_row(ConformanceContext& context) {
-    if (samples_.size() < kMinStartSamples) {
+    if (fit_.observations() < kMinStartSamples) {
       context.report.rows.push_back(
           {"latency", Conformity::kNotJudged,
            fmt::format("vision saw {} starts of the robot {} times, fewer than {} times", starts_,
-                       samples_.size(), kMinStartSamples)});
+                       fit_.observations(), kMinStartSamples)});
       return;
     }
-    const Duration late = measured_late();
-    context.is_late =
-        std::abs(to_seconds(late)) * context.scenario.limits.speed_mps > context.scenario.tracking_bound_m;
-    context.report.rows.push_back(latency_row(context.probe.robot_report()->lead, late, !context.is_late));
+    const Duration lead = context.probe.robot_report()->lead;
+    const LatencyFit::Result result = fit_.result();
+    const MeasuredLatency measured{lead, result.late, result.uncertainty, context.scenario.limits.speed_mps};
+    const double max_error_m = context.scenario.tracking_bound_m;
+    context.is_late = !(std::abs(to_seconds(result.late)) * measured.speed_mps <= max_error_m);
+    context.report.rows.push_back(latency_row(measured, max_error_m));
+    if (lead + result.late > Duration{0}) context.report.figures.latency = lead + result.late;
   }
 
   std::optional<Time> since_;
@@ -118,12 +109,7 @@ class LatencyStep final : public ConformanceStep {
   std::optional<Version> start_;
   Vec2 rest_error_sum_m_{0, 0};  ///< the sum of the errors at rest, before the latest start
   int before_count_ = 0;
-  struct Start {
-    Trajectory trajectory;
-    Time at;  ///< measured with the robot's clock
-    Vec2 seen_m;
-  };
-  std::vector<Start> samples_;
+  LatencyFit fit_;
 };
 
 }  // namespace

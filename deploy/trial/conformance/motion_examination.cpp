@@ -12,41 +12,55 @@ namespace {
 
 // Ratio of the tracking bound to the largest measured error.
 constexpr double kTrackingBoundRatio = 1.25;
+// Ratio of the drift bound to three standard deviations of the estimate and four of the odometry's error.
+constexpr double kUncertaintyRatio = 1.25;
+
+void raise_bound(ConformanceContext& context, double needed_m) {
+  auto& bound_m = context.report.figures.tracking_bound_m;
+  bound_m = std::max(bound_m.value_or(0), std::ceil(needed_m * 1e3) * 1e-3);
+}
 
 }  // namespace
 
-/// A robot whose motors respond later or earlier than it assumes cannot follow its reference; only the
-/// latency row then fails. If reports were missing during the step, this process, the robot's, or the network
-/// between them paused, and versions may have come too late.
 Conformity judged(bool is_passed, const ConformanceContext& context, std::string& figures) {
   if (is_passed) return Conformity::kPassed;
   if (context.is_late) {
     figures += "; its latency prevents it from following";
     return Conformity::kNotJudged;
   }
-  const RobotProbe& probe = context.probe;
-  if (probe.longest_gap() <= probe.max_gap()) return Conformity::kFailed;
-  figures +=
-      fmt::format("; a computer or the network is too busy: reports came {:.0f} ms apart, not {:.0f} ms",
-                  to_seconds(probe.longest_gap()) * 1e3, to_seconds(probe.max_gap()) * 1e3);
-  return Conformity::kNotJudged;
+  return unless_busy(false, context.probe, figures);
 }
 
 void keep_error(ConformanceContext& context, const MotionSample& sample) {
   if (sample.is_off_reference) return;
-  const double error_m = (sample.seen_m - sample.reference.state.position_m).norm();
-  auto& bound_m = context.report.figures.tracking_bound_m;
-  bound_m = std::max(bound_m.value_or(0), std::ceil(kTrackingBoundRatio * error_m * 1e3) * 1e-3);
+  raise_bound(context, kTrackingBoundRatio * (sample.seen_m - sample.reference.state.position_m).norm());
 }
 
-double bound_for_dead_reckoning_m(const LocalisationUncertainty& uncertainty, const Scenario& scenario,
-                                  Duration lead) {
-  const double speed_mps = scenario.limits.speed_mps;
-  const double way_m = speed_mps * to_seconds(lead + 2 * scenario.cycle) +
-                       speed_mps * speed_mps / (2 * scenario.limits.deceleration_mps2);
+void keep_report(ConformanceContext& context) {
+  const RobotReport& report = *context.probe.robot_report();
+  if (report.is_off_reference || report.is_lifted) {
+    context.reported_error_m.reset();
+    return;
+  }
+  if (context.reported_at == report.valid_at) return;
+  const double error_m = report.tracking_error_m + 2 * report.uncertainty.position_error_rms_m;
+  // An error in two reports in a row may have lasted for as long as the control may take.
+  if (context.reported_error_m)
+    raise_bound(context,
+                kTrackingBoundRatio * std::min(*context.reported_error_m, error_m) / drift_bound_m(1));
+  context.reported_error_m = error_m;
+  context.reported_at = report.valid_at;
+}
+
+void keep_uncertainty(ConformanceContext& context) {
+  const RobotReport& report = *context.probe.robot_report();
+  const MotionLimits& limits = context.scenario.limits;
+  const double way_m = limits.speed_mps * to_seconds(report.lead + 2 * context.scenario.cycle) +
+                       limits.speed_mps * limits.speed_mps / (2 * limits.deceleration_mps2);
+  const LocalisationUncertainty& uncertainty = report.uncertainty;
   const double error_m =
       std::hypot(3 * uncertainty.position_error_rms_m, 4 * uncertainty.odometry_scale_stddev * way_m);
-  return error_m / drift_bound_m(1);
+  raise_bound(context, kUncertaintyRatio * error_m / drift_bound_m(1));
 }
 
 VersionStream::Policy drive_to(const Vec2& goal_m, const MotionLimits& limits, double speed_mps) {

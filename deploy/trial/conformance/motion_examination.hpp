@@ -14,17 +14,21 @@ constexpr double kEdge_m = 0.35;
 /// Errors up to this many standard deviations may be due to vision's noise.
 constexpr double kNoiseDeviations = 4;
 
-/// The judgement of a step, with the reason added to `figures` if it is not the robot's fault.
+/// The judgement of a step, with the reason added to `figures` if it is not the robot's fault. A robot whose
+/// motors respond later or earlier than it assumes cannot follow its reference; only the latency row then
+/// fails.
 Conformity judged(bool is_passed, const ConformanceContext& context, std::string& figures);
 
-/// Keeps the largest error of all steps, for the scenario's tracking bound.
+/// Raises the scenario's tracking bound to what this observation needs.
 void keep_error(ConformanceContext& context, const MotionSample& sample);
-
-/// The tracking bound within which the robot can stop from full speed without further observations
-/// (coordinator/PROTOCOL.md, "Dead reckoning"): three standard deviations of its estimate, and four of the
-/// error that grows with the distance driven, are within the drift bound.
-double bound_for_dead_reckoning_m(const LocalisationUncertainty& uncertainty, const Scenario& scenario,
-                                  Duration lead);
+/// Raises the scenario's tracking bound to what the robot's latest report needs. A robot makes its own stop
+/// if the error that it reports, with twice its uncertainty, exceeds the drift bound for longer than its
+/// control may take. Call once per cycle while the robot drives.
+void keep_report(ConformanceContext& context);
+/// Raises the scenario's tracking bound to that within which the robot can stop from full speed without
+/// further observations (coordinator/PROTOCOL.md, "Dead reckoning"), with a reserve: with the bound itself,
+/// agents would drive slowly whenever the robot's estimate is a little less certain.
+void keep_uncertainty(ConformanceContext& context);
 
 /// A policy that drives to a point and stops there.
 VersionStream::Policy drive_to(const Vec2& goal_m, const MotionLimits& limits, double speed_mps);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "common/messaging/observation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
@@ -40,6 +41,18 @@ Time RobotProbe::robot_now() const { return bus_.now() + robot_clock_offset(); }
 
 Duration RobotProbe::max_gap() const { return max_report_gap(cycle_) + kMaxDelayVariation; }
 
+std::optional<std::string> RobotProbe::why_busy() const {
+  const auto ms = [](Duration duration) { return to_seconds(duration) * 1e3; };
+  if (longest_gap_ > max_gap())
+    return fmt::format("reports came {:.0f} ms apart, not {:.0f} ms", ms(longest_gap_), ms(max_gap()));
+  // Versions are sent three cycles before they must have arrived, and again in the next cycle.
+  const Duration max_delay = 2 * cycle_;
+  if (longest_command_delay_ > max_delay)
+    return fmt::format("a command took {:.0f} ms to arrive, not {:.0f} ms", ms(longest_command_delay_),
+                       ms(max_delay));
+  return std::nullopt;
+}
+
 void RobotProbe::send_command() {
   if (!sends_commands) return;
   Command command;
@@ -52,7 +65,7 @@ void RobotProbe::send_command() {
     command.fix =
         PoseFix{fix_->captured_at + robot_clock_offset(), fix_->position_m + fix_error_m, fix_->heading_rad};
   fix_.reset();
-  if (robot_report_) command.desired_heading_rad = robot_report_->heading_rad;
+  if (robot_report_) command.desired_heading_rad = desired_heading_rad.value_or(robot_report_->heading_rad);
   send(encode(command));
 }
 
@@ -74,9 +87,13 @@ void RobotProbe::on_robot_report(const msg::Feedback& message) {
         longest_gap_at_robot_, (robot_report->valid_at - robot_report_->valid_at) / static_cast<int>(made));
   }
   message_number_ = message.header().message_number();
-  if (robot_report->command)
+  if (robot_report->command) {
+    const Duration delay = robot_report->command->received_at - robot_report->command->sent_at;
+    if (const auto offset = clock_offset())
+      longest_command_delay_ = std::max(longest_command_delay_, delay - offset->middle());
     (void)clock_.add(
         {robot_report->command->sent_at, robot_report->command->received_at, robot_report->valid_at, now});
+  }
   robot_report_ = *robot_report;
   report_at_ = now;
   const bool is_new = executed_.empty() || executed_.back().version.number != robot_report->executing.number;
@@ -91,8 +108,11 @@ void RobotProbe::on_world_state(const msg::WorldState& message) {
     const auto seen = decode(robot, bus_.now());
     if (!seen || (seen_ && seen->observed_at <= seen_->observed_at)) continue;
     seen_ = seen;
-    if (std::isfinite(robot.observed_heading_rad()))
+    seen_heading_rad_.reset();
+    if (std::isfinite(robot.observed_heading_rad())) {
+      seen_heading_rad_ = robot.observed_heading_rad();
       fix_ = PoseFix{seen->observed_at, seen->position_m, robot.observed_heading_rad()};
+    }
     pending_observations_.push_back(*seen);
     if (pending_observations_.size() > kMaxUnjudged) pending_observations_.pop_front();
   }

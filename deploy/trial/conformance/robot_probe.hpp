@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
@@ -40,6 +41,8 @@ class RobotProbe {
   /// An error that is added to the fixes.
   Vec2 fix_error_m{0, 0};
   bool sends_commands = true;
+  /// nullopt: the robot keeps the heading that it has.
+  std::optional<double> desired_heading_rad;
 
   /// Sends the command of this cycle.
   void send_command();
@@ -56,10 +59,16 @@ class RobotProbe {
   /// The longest interval between the times at which the robot made them. Where reports were lost, by their
   /// message numbers, it is the mean of the interval that they leave.
   Duration longest_gap_at_robot() const { return longest_gap_at_robot_; }
-  void reset_gap() { longest_gap_ = longest_gap_at_robot_ = Duration{0}; }
+  /// Forgets the longest intervals and delays.
+  void reset_gap() { longest_gap_ = longest_gap_at_robot_ = longest_command_delay_ = Duration{0}; }
   /// The longest interval between two reports of a robot that reports as often as it must.
   Duration max_gap() const;
+  /// Why versions may have come too late since the last reset_gap(): this process, the robot's, or the
+  /// network between them paused. nullopt if they were in time.
+  std::optional<std::string> why_busy() const;
   const std::optional<RobotObservation>& seen() const { return seen_; }
+  /// The heading at the time of seen(); nullopt if vision has not measured it.
+  const std::optional<double>& seen_heading_rad() const { return seen_heading_rad_; }
   /// Bounds on how far the robot's clock is ahead of this process's clock; nullopt before the first exchange.
   std::optional<OffsetInterval> clock_offset() const { return clock_.at(bus_.now()); }
   Time now() const { return bus_.now(); }
@@ -89,8 +98,9 @@ class RobotProbe {
   Time report_at_{};
   std::uint64_t report_count_ = 0, malformed_reports_ = 0;
   std::uint64_t message_number_ = 0;  ///< of the last report
-  Duration longest_gap_{0}, longest_gap_at_robot_{0};
+  Duration longest_gap_{0}, longest_gap_at_robot_{0}, longest_command_delay_{0};
   std::optional<RobotObservation> seen_;
+  std::optional<double> seen_heading_rad_;
   std::optional<PoseFix> fix_;  ///< not sent yet
   struct Executed {
     Version version;

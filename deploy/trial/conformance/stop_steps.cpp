@@ -6,6 +6,7 @@
 
 #include "deploy/trial/conformance/motion_examination.hpp"
 #include "deploy/trial/conformance/stop_observation.hpp"
+#include "deploy/trial/conformance/straight_run.hpp"
 
 namespace sidestep {
 namespace {
@@ -15,36 +16,20 @@ using namespace std::chrono_literals;
 /// Accelerates on a straight line, and then sends nothing that would continue the motion.
 class NoMoreCommandsStep final : public ConformanceStep {
  public:
-  NoMoreCommandsStep(std::string rule, double speed_mps, bool is_silent)
-      : rule_(std::move(rule)), speed_mps_(speed_mps), is_silent_(is_silent) {}
+  NoMoreCommandsStep(const Scenario& scenario, std::string rule, double speed_mps, bool is_silent)
+      : rule_(std::move(rule)), run_(scenario, speed_mps, Duration{0}), is_silent_(is_silent) {}
 
   std::string name() const override { return rule_; }
 
   bool update(ConformanceContext& context) override {
     RobotProbe& probe = context.probe;
-    const Time now = probe.now();
-    if (!since_) prepare(context);
-    if (!has_begun_) {
-      context.stream.extend(drive_to(begin_m_, context.scenario.limits, 0.5));
-      if (!is_at(context, begin_m_) && now - *since_ < kDriveTimeout) return false;
-      has_begun_ = true;
-      since_ = now;
-    }
+    keep_report(context);
     if (!observation_) {
-      const double speed_mps = speed_mps_;
-      context.stream.extend([speed_mps](const State& from, Time) {
-        return Vec2((Vec2(speed_mps, 0) - from.velocity_mps) / 0.05);
-      });
-      const auto& last = context.stream.last();
-      const bool is_fast =
-          last && last->trajectory.state_at(last->trajectory.start() + 3 * probe.cycle()).velocity_mps.x() >
-                      0.97 * speed_mps_;
-      const bool is_at_end =
-          last && last->trajectory.rest_position_m().x() >
-                      context.scenario.field.length_m / 2 - context.scenario.radius_m - 0.1;
-      if (!is_fast && !is_at_end) return now - *since_ > kDriveTimeout && give_up(context);
+      const StraightRun::Phase phase = run_.update(context);
+      if (phase == StraightRun::Phase::kUnderWay) return false;
+      if (phase == StraightRun::Phase::kGivenUp) return give_up(context);
       // The last version is sent until the robot has it.
-      observation_.emplace(*last);
+      observation_.emplace(*context.stream.last());
       probe.on_sample([this, &context](const MotionSample& sample) {
         keep_error(context, sample);
         observation_->add(sample);
@@ -62,20 +47,11 @@ class NoMoreCommandsStep final : public ConformanceStep {
   }
 
  private:
-  void prepare(ConformanceContext& context) {
-    const Scenario& scenario = context.scenario;
-    const double room_m = scenario.field.length_m - 2 * (scenario.radius_m + kEdge_m);
-    const double f = 0.8 * scenario.limits.acceleration_mps2, d = scenario.limits.deceleration_mps2;
-    speed_mps_ = std::min(speed_mps_, std::sqrt(2 * 0.8 * room_m / (1 / f + 1 / d)));
-    begin_m_ = {-room_m / 2, 0};
-    since_ = context.probe.now();
-  }
-
   bool give_up(ConformanceContext& context) {
     context.stream.stop();
     context.report.rows.push_back(
         {rule_, Conformity::kNotJudged,
-         fmt::format("the robot could not be accelerated to {:.2f} m/s", speed_mps_)});
+         fmt::format("the robot could not be accelerated to {:.2f} m/s", run_.speed_mps())});
     return true;
   }
 
@@ -102,21 +78,18 @@ class NoMoreCommandsStep final : public ConformanceStep {
   }
 
   std::string rule_;
-  double speed_mps_;
+  StraightRun run_;
   bool is_silent_;
-  Vec2 begin_m_{0, 0};
-  std::optional<Time> since_;  ///< the beginning of the way to begin_m_, then of the acceleration
-  bool has_begun_ = false;
   std::optional<StopObservation> observation_;
 };
 
 }  // namespace
 
-std::unique_ptr<ConformanceStep> make_lost_commands_step() {
-  return std::make_unique<NoMoreCommandsStep>("lost commands", 0.3, true);
+std::unique_ptr<ConformanceStep> make_lost_commands_step(const Scenario& scenario) {
+  return std::make_unique<NoMoreCommandsStep>(scenario, "lost commands", 0.3, true);
 }
 std::unique_ptr<ConformanceStep> make_braking_step(const Scenario& scenario) {
-  return std::make_unique<NoMoreCommandsStep>("braking", scenario.limits.speed_mps, false);
+  return std::make_unique<NoMoreCommandsStep>(scenario, "braking", scenario.limits.speed_mps, false);
 }
 
 }  // namespace sidestep

@@ -42,8 +42,9 @@ void VersionStream::resynchronise() {
   const bool is_late = robot_report.valid_at > last_->trajectory.start() + kReportTimeout &&
                        robot_report.executing.number != last_->number;
   // The robot's own stop replaces all versions.
-  if (!is_late && !(robot_report.is_off_reference && robot_report.executing.number > last_->number)) return;
-  ++broken_;
+  const bool is_own_stop = robot_report.is_off_reference && robot_report.executing.number > last_->number;
+  if (!is_late && !is_own_stop) return;
+  ++(is_own_stop ? own_stops_ : late_versions_);
   last_.reset();
 }
 

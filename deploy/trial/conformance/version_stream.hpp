@@ -28,8 +28,11 @@ class VersionStream {
   void forget();
   /// Whether the robot has executed all versions to their end.
   bool is_at_rest() const;
-  /// Number of times that the robot did not execute a version of the stream.
-  int broken() const { return broken_; }
+  /// Number of times that the robot made its own stop instead of executing a version of the stream.
+  int own_stops() const { return own_stops_; }
+  /// Number of times that the robot did not execute a version of the stream and made no own stop: the version
+  /// came too late or not at all.
+  int late_versions() const { return late_versions_; }
   /// A version of this stream that starts after the robot's lead. Its number is not used again.
   Version next(const Trajectory& trajectory);
   /// The last version that the robot is expected to execute.
@@ -47,7 +50,7 @@ class VersionStream {
   VersionNumber number_ = 0;
   std::optional<Version>
       last_;  ///< nullopt: the stream continues from the version that the robot is executing
-  int broken_ = 0;
+  int own_stops_ = 0, late_versions_ = 0;
 };
 
 }  // namespace sidestep
