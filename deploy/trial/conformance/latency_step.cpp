@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -15,6 +16,7 @@ using namespace std::chrono_literals;
 // more starts.
 constexpr int kStarts = 8, kMaxStarts = 24;
 constexpr std::size_t kMinStartSamples = 10;
+constexpr Duration kExact = 3ms;
 // The part of each start that is evaluated: later, the robot's control corrects for the latency.
 constexpr Duration kStartBegin = 20ms, kStartEnd = 200ms;
 
@@ -97,7 +99,10 @@ class LatencyStep final : public ConformanceStep {
     const Duration lead = context.probe.robot_report()->lead;
     const LatencyFit::Result result = fit_.result();
     const MeasuredLatency measured{lead, result.late, result.uncertainty, context.scenario.limits.speed_mps};
-    const double max_error_m = context.scenario.tracking_bound_m;
+    // The rest of the bound is for other errors. A latency within kExact is as exact as it can be measured.
+    const double bound_m = context.scenario.tracking_bound_m;
+    const double max_error_m =
+        std::max(0.25 * bound_m, std::min(bound_m, to_seconds(kExact) * measured.speed_mps));
     context.is_late = !(std::abs(to_seconds(result.late)) * measured.speed_mps <= max_error_m);
     context.report.rows.push_back(latency_row(measured, max_error_m));
     if (lead + result.late > Duration{0}) context.report.figures.latency = lead + result.late;
