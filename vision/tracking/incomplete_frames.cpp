@@ -36,6 +36,7 @@ void IncompleteFrames::update(const Frame& frame, double complete_within_m) {
   IncompleteFrame& latest = is_known ? *found : frames_.emplace_back();
   latest.camera = frame.camera();
   latest.captured_at = frame.captured_at();
+  latest.date_uncertainty = frame.date_uncertainty();
   latest.complete_within_m = complete_within_m;
   latest.robots_m.clear();
   for (const RobotPoseObservation& robot : frame.robots()) latest.robots_m.push_back(robot.position_m);
@@ -47,8 +48,9 @@ double IncompleteFrames::complete_within_m(std::span<const Vec2> robots_m, Time 
     if (t - frame.captured_at > max_age_) continue;
     // The distance is known only for the frame's robots. Other robots may be nearer to a missing obstacle by
     // up to their distance from the nearest of these.
-    const double uncertainty = max_distance_m(robots_m, frame.robots_m) + max_error_m_ +
-                               max_speed_mps_ * std::abs(to_seconds(t - frame.captured_at));
+    const Duration age = std::chrono::abs(t - frame.captured_at) + frame.date_uncertainty;
+    const double uncertainty =
+        max_distance_m(robots_m, frame.robots_m) + max_error_m_ + max_speed_mps_ * to_seconds(age);
     distance = robots_m.empty() ? 0 : std::min(distance, frame.complete_within_m - uncertainty);
   }
   return std::max(0.0, distance);

@@ -32,6 +32,7 @@ class IncompleteFrames {
   struct IncompleteFrame {
     std::uint32_t camera = 0;
     Time captured_at{};
+    Duration date_uncertainty{0};
     double complete_within_m = 0;
     std::vector<Vec2> robots_m;
   };

@@ -67,7 +67,7 @@ void ObstacleTracker::update(const Frame& frame) {
   }
   for (std::size_t i = 0; i < frame.obstacles().size(); ++i) {
     const ObstacleObservation& observation = frame.obstacles()[i];
-    if (is_used_[i] || start_track(frame.captured_at(), observation, confirm_hits)) continue;
+    if (is_used_[i] || start_track(frame, observation, confirm_hits)) continue;
     ++rejected_;
     complete_within_m = std::min(complete_within_m, robot_distance_m(observation, frame));
   }
@@ -85,7 +85,7 @@ void ObstacleTracker::find_pairs(const Frame& frame) {
   pairs_.clear();
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Vec2& centre = tracks_[t].filter.position();
-    const double gate = gate_m(tracks_[t], frame.captured_at());
+    const double gate = gate_m(tracks_[t], frame);
     for (auto o = std::ranges::lower_bound(by_x, centre.x() - gate, {}, x_of); o != by_x.end(); ++o) {
       if (x_of(*o) > centre.x() + gate) break;
       const Vec2& position_m = observations[*o].position_m;
@@ -105,7 +105,7 @@ void ObstacleTracker::associate(const Frame& frame) {
   for (const Pair& pair : pairs_) {
     if (is_updated_[pair.track] || is_used_[pair.observation]) continue;
     is_updated_[pair.track] = is_used_[pair.observation] = true;
-    update_track(tracks_[pair.track], frame.captured_at(), frame.obstacles()[pair.observation]);
+    update_track(tracks_[pair.track], frame, frame.obstacles()[pair.observation]);
   }
 }
 
@@ -115,14 +115,17 @@ double ObstacleTracker::predicted_distance_m(const Track& track, Time at, const 
   return (position_m - predicted).norm();
 }
 
-/// Maximum distance from the last estimate at which the obstacle can be observed at a time.
-double ObstacleTracker::gate_m(const Track& track, Time at) const {
+/// Maximum distance from the last estimate at which the obstacle can be observed in a frame.
+double ObstacleTracker::gate_m(const Track& track, const Frame& frame) const {
   const double deviation =
       std::sqrt(track.filter.covariance()(0, 0)) + std::sqrt(2.0) * settings_.position_noise_m;
-  return settings_.max_speed_mps * std::abs(to_seconds(at - track.observed_at)) + kGateDeviations * deviation;
+  const Duration age = std::chrono::abs(frame.captured_at() - track.observed_at) + track.date_uncertainty +
+                       frame.date_uncertainty();
+  return settings_.max_speed_mps * to_seconds(age) + kGateDeviations * deviation;
 }
 
-void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservation& observation) {
+void ObstacleTracker::update_track(Track& track, const Frame& frame, const ObstacleObservation& observation) {
+  const Time at = frame.captured_at();
   if (at <= track.observed_at) return;
   const double variance = settings_.position_noise_m * settings_.position_noise_m;
   track.filter.predict(to_seconds(at - track.observed_at), kObstacleMotion);
@@ -138,15 +141,18 @@ void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservat
   track.radius_m =
       std::max(observation.radius_m, track.radius_m + kRadiusGain * (observation.radius_m - track.radius_m));
   track.observed_at = at;
+  track.date_uncertainty = frame.date_uncertainty();
   if (++track.hits >= kConfirmHits && track.number == 0) track.number = ++last_number_;
 }
 
-bool ObstacleTracker::start_track(Time at, const ObstacleObservation& observation, int confirm_hits) {
+bool ObstacleTracker::start_track(const Frame& frame, const ObstacleObservation& observation,
+                                  int confirm_hits) {
   if (tracks_.size() == kMaxTracks) return false;
   const double variance = settings_.position_noise_m * settings_.position_noise_m;
   const ConstantVelocityFilter<2> filter(observation.position_m, variance,
                                          settings_.max_speed_mps * settings_.max_speed_mps);
-  tracks_.push_back({confirm_hits <= 1 ? ++last_number_ : 0, 1, at, observation.radius_m, filter});
+  tracks_.push_back({confirm_hits <= 1 ? ++last_number_ : 0, 1, frame.captured_at(), frame.date_uncertainty(),
+                     observation.radius_m, filter});
   return true;
 }
 
@@ -160,7 +166,7 @@ double ObstacleTracker::min_distance_m(const Track& track, Time t) const {
     min_squared = std::min(min_squared, (track.filter.position() - robot).squaredNorm());
   return std::sqrt(min_squared) - track.radius_m -
          kObstacleSigmas * std::sqrt(track.filter.covariance()(0, 0)) -
-         settings_.max_speed_mps * std::abs(to_seconds(t - track.observed_at));
+         settings_.max_speed_mps * std::abs(to_seconds(t - track.earliest()));
 }
 
 void ObstacleTracker::list_at(Time t, std::span<const msg::TrackedRobot> robots, msg::ObstacleList& list) {
@@ -183,7 +189,7 @@ void ObstacleTracker::list_at(Time t, std::span<const msg::TrackedRobot> robots,
   list.obstacles().resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Track& track = *listed_[i].track;
-    fill(list.obstacles()[i], track.number, track.observed_at, track.radius_m, track.filter);
+    fill(list.obstacles()[i], track.number, track.earliest(), track.radius_m, track.filter);
   }
 }
 

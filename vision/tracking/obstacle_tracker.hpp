@@ -45,8 +45,12 @@ class ObstacleTracker {
     std::uint32_t number = 0;  ///< 0: not yet confirmed
     int hits = 0;
     Time observed_at{};
+    Duration date_uncertainty{0};  ///< maximum error of observed_at
     double radius_m = 0;
     ConstantVelocityFilter<2> filter;  ///< state at observed_at
+
+    /// The obstacle may have moved since this time.
+    Time earliest() const { return observed_at - date_uncertainty; }
   };
   /// A track, and an observation that its obstacle could have reached.
   struct Pair {
@@ -64,10 +68,11 @@ class ObstacleTracker {
   void associate(const Frame& frame);
   void find_pairs(const Frame& frame);
   double predicted_distance_m(const Track& track, Time at, const Vec2& position_m) const;
-  double gate_m(const Track& track, Time at) const;
-  void update_track(Track& track, Time at, const ObstacleObservation& observation);
+  double gate_m(const Track& track, const Frame& frame) const;
+  void update_track(Track& track, const Frame& frame, const ObstacleObservation& observation);
   /// False if all tracks are in use.
-  [[nodiscard]] bool start_track(Time at, const ObstacleObservation& observation, int confirm_hits);
+  [[nodiscard]] bool start_track(const Frame& frame, const ObstacleObservation& observation,
+                                 int confirm_hits);
   void drop_stale_tracks(Time now);
   /// Lower bound of the obstacle's distance from the robots in robots_m_ at a time; infinite without robots.
   double min_distance_m(const Track& track, Time t) const;

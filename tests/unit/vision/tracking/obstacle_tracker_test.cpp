@@ -106,6 +106,20 @@ TEST_CASE("an obstacle is published after its second observation and dropped 1 s
   CHECK(fixture.obstacles_at(kBegin + 3100 * kMs).obstacles()[0].obstacle() > first);
 }
 
+TEST_CASE("an obstacle in frames with an uncertain date may have moved since the earliest possible date") {
+  TrackerFixture fixture(0);
+  const auto feed = [&](Time at, Duration date_uncertainty) {
+    auto frame = empty_frame(0, at);
+    add_obstacle(frame, {1, 1});
+    fixture.feed(frame, at, date_uncertainty);
+    const auto& list = fixture.obstacles_at(at);
+    return list.obstacles().empty() ? Time{} : time_from_ns(list.obstacles()[0].observed_at_ns());
+  };
+  (void)feed(kBegin, 10 * kMs);
+  CHECK(feed(kBegin + kFrame, 15 * kMs) == kBegin + kFrame - 15 * kMs);
+  CHECK(feed(kBegin + 2 * kFrame, Duration{0}) == kBegin + 2 * kFrame);
+}
+
 TEST_CASE("late and duplicate frames neither change tracks nor start new ones") {
   Rng rng(5);
   const Walker walker{{-2, 0}, {2, 0}, 1.5};
