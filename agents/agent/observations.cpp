@@ -51,7 +51,9 @@ void Observations::on_world_state(const WorldObservations& world, Time now, bool
     return;
   }
   obstacles_.on_world_state(world);
-  if (captured_at >= last_fix_) is_seen_elsewhere_ = world.is_self_seen_elsewhere;
+  // World states may overtake each other: only a later observation of the robot at its own place reassures.
+  if (captured_at > last_fix_) is_seen_elsewhere_ = false;
+  if (captured_at >= last_fix_) is_seen_elsewhere_ |= world.is_self_seen_elsewhere;
   if (captured_at <= last_fix_) return;
   fix_ = world.self;
   if (!is_robot_clock_known) return;

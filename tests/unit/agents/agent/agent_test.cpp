@@ -263,6 +263,8 @@ TEST_CASE("a robot that vision's latest observations show elsewhere is not drive
   CHECK(d.agent.wait_reason(at_s(0.64)) == WaitReason::kSeenElsewhere);
   d.agent.on_world_state(observation(0, 0.5), at_s(0.64));  // overtaken
   CHECK_FALSE(d.plans(0.64));
+  d.agent.on_world_state(observation(0, 0.6), at_s(0.64));  // likewise, with the same observation
+  CHECK_FALSE(d.plans(0.64));
   d.observe(0, 0.65, 0.66);
   CHECK(d.plans(0.67));
 }
