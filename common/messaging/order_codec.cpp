@@ -2,7 +2,6 @@
 #include "common/messaging/order_codec.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -188,7 +187,7 @@ std::optional<OrderReport> decode(const msg::OrderStatus& message) {
                         is_enumerator(message.block_reason(), msg::BlockReason::BLOCK_STRANGER) &&
                         is_on_floor(message.blocker_x_m(), message.blocker_y_m()) &&
                         is_on_floor(message.nearest_x_m(), message.nearest_y_m()) &&
-                        std::isfinite(message.blocker_speed_mps()) && message.blocker_speed_mps() >= 0 &&
+                        is_between(message.blocker_speed_mps(), 0, kMaxSpeed_mps) &&
                         is_name_of(message.client_name(), message.client()) &&
                         message.remaining_s() <= kMaxRemaining_s;
   const bool is_blocked = message.order_state() == msg::OrderState::ORDER_BLOCKED;

@@ -236,6 +236,7 @@ TEST_CASE("an agent's report with a value out of range or about another robot is
   CHECK(is_refused_with([](auto& m) { m.nearest_x_m(-1e5); }));
   CHECK(is_refused_with([](auto& m) { m.blocker_speed_mps(kNan); }));
   CHECK(is_refused_with([](auto& m) { m.blocker_speed_mps(-1); }));
+  CHECK(is_refused_with([](auto& m) { m.blocker_speed_mps(1e300); }));
   CHECK(is_refused_with([](auto& m) { m.nearest_y_m(kNan); }));
   CHECK(is_refused_with([](auto& m) { m.remaining_s(kNan); }));
   CHECK(is_refused_with([](auto& m) { m.remaining_s(1e10); }));
