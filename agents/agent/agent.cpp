@@ -113,7 +113,7 @@ std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
 }
 
 std::optional<Proposal> Agent::propose_rest_version(Time now, Time start) {
-  if (!negotiation_.may_propose(now)) return std::nullopt;
+  if (is_stopping_ || !negotiation_.may_propose(now)) return std::nullopt;
   const auto rest_at = [&](const Vec2& place_m, VersionNumber base) {
     const Trajectory rest = Trajectory::resting(start, place_m);
     return negotiation_.propose({&rest, 1}, base, now);

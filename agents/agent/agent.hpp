@@ -59,7 +59,7 @@ class Agent {
     strangers_.close_cycle(now);
   }
 
-  /// Proposes no more motions, so the robot brakes along the version that it has.
+  /// Proposes no more versions, so the robot brakes along the version that it has.
   void stop() { is_stopping_ = true; }
   /// Whether the robot stays at rest if the agent ends: it has no version that still moves it, and none that
   /// awaits its verdict. Holds if the robot does not obey this agent.

@@ -37,7 +37,7 @@ class AgentNode {
   bool uses_clock() const {
     return agent_.is_superseded() || clocks_.robot_coordinator_offset(bus_.now()).has_value();
   }
-  /// Proposes no more motions, so the robot brakes along the version that it has. Returns whether the robot
+  /// Proposes no more versions, so the robot brakes along the version that it has. Returns whether the robot
   /// rests, or has had twice the time that it needs.
   [[nodiscard]] bool come_to_rest();
   /// Whether the robot is known to stay at rest without this agent.

@@ -228,6 +228,9 @@ TEST_CASE("an inflated robot waits until it is at rest and vision agrees with it
   CHECK(proposal->candidates[0]->base == 50);
   CHECK(proposal->candidates[0]->inflation_m == 0);
   CHECK(proposal->candidates[0]->trajectory.phases().empty());
+  // A proposal without a verdict would delay the end of the agent.
+  d.agent.stop();
+  CHECK_FALSE(rest(1.08));
 }
 
 TEST_CASE("the inflation of a robot without an order ends too, but a held robot proposes nothing") {
