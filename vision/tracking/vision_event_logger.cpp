@@ -80,12 +80,13 @@ void VisionEventLogger::update(std::span<const CameraDisagreement> pairs, Time n
   for (const CameraDisagreement& pair : pairs) {
     if (pair.samples < kReportedSamples) continue;
     const double offset_m = pair.offset_m.norm();
-    const auto [reported, is_new] = reported_m_.try_emplace({pair.first, pair.second}, offset_m);
     // Differences that are not corrected are noise.
-    const bool is_reportable =
-        is_new || (pair.is_corrected && std::abs(offset_m - reported->second) > 0.1 * offset_m + 0.001);
+    const double difference_m = pair.is_corrected ? offset_m : 0;
+    const auto reported = reported_m_.find({pair.first, pair.second});
+    const bool is_reportable = reported == reported_m_.end() ||
+                               std::abs(difference_m - reported->second) > 0.1 * difference_m + 0.001;
     if (!is_reportable || !pair_reports_.admit(now)) continue;
-    reported->second = offset_m;
+    reported_m_[{pair.first, pair.second}] = difference_m;
     if (!pair.is_corrected) {
       events_.report(LogLevel::kDebug, {}, "cameras {} and {} agree within {:.1f} mm", pair.first,
                      pair.second, std::max(offset_m, CameraOffsets::kMinOffset_m) * 1e3);

@@ -56,7 +56,8 @@ class VisionEventLogger {
 
   const EventReporter& events_;
   double max_disagreement_m_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> reported_m_;  ///< disagreement of each pair
+  /// Disagreement of each pair as reported; 0 if it is not corrected.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> reported_m_;
   RateLimit pair_reports_{8, std::chrono::seconds(10)};
   std::map<std::uint32_t, Camera> cameras_;
   std::optional<Time> begin_;

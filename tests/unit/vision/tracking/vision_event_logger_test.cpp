@@ -89,4 +89,24 @@ TEST_CASE("refused frames of unknown cameras are reported at intervals that grow
   CHECK(f.events->all().size() == 5);
 }
 
+TEST_CASE("every pair of cameras that disagree is named once, although only eight are named at once") {
+  constexpr std::uint32_t kCameras = 5;
+  Fixture f({0, 1, 2, 3, 4});
+  for (int i = 0; i < 2'000; ++i) {
+    for (std::uint32_t camera = 0; camera < kCameras; ++camera) {
+      msg::DetectionFrame frame = frame_message(camera, f.network.now());
+      add_robot(frame, 0, {1 + 0.01 * camera, 0});
+      f.node->add_frame(frame);
+    }
+    f.wait(20 * kMs);
+  }
+  CAPTURE(f.events->text());
+  for (std::uint32_t first = 0; first < kCameras; ++first) {
+    for (std::uint32_t second = first + 1; second < kCameras; ++second) {
+      const std::string pair = "cameras " + std::to_string(first) + " and " + std::to_string(second);
+      CHECK(f.events->count(pair + " disagree by ") == 1);
+    }
+  }
+}
+
 }  // namespace sidestep::vision_event_logger_test
