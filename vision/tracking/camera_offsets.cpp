@@ -98,12 +98,21 @@ void CameraOffsets::add_sample(std::uint32_t camera, std::uint32_t other, const 
 }
 
 void CameraOffsets::advance(Duration elapsed) {
-  const double max_m = kMaxChange_mps * std::max(to_seconds(elapsed), 0.0);
-  for (CameraDisagreement& measured : pairs_) {
+  for (CameraDisagreement& measured : pairs_)
     if (is_significant(measured)) measured.is_corrected = true;
+  const auto count_pairs = [&](std::uint32_t camera) {
+    return std::ranges::count_if(pairs_, [&](const CameraDisagreement& pair) {
+      return pair.is_corrected && (pair.first == camera || pair.second == camera);
+    });
+  };
+  const double max_m = kMaxChange_mps * std::max(to_seconds(elapsed), 0.0);
+  for (const CameraDisagreement& measured : pairs_) {
     if (!measured.is_corrected || measured.samples < kMinSamples) continue;
     Vec2 &first_m = corrections_m_.at(measured.first), &second_m = corrections_m_.at(measured.second);
-    const Vec2 step = limited_step((measured.offset_m + second_m - first_m) / 2, max_m);
+    // Each pair of a camera adds a step.
+    const auto pairs =
+        static_cast<double>(std::max(count_pairs(measured.first), count_pairs(measured.second)));
+    const Vec2 step = limited_step((measured.offset_m + second_m - first_m) / 2, max_m / pairs);
     first_m += step;
     second_m -= step;
   }

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "tests/catch.hpp"
@@ -114,6 +116,13 @@ TEST_CASE("cameras in a row are corrected so that all agree") {
   CHECK((cameras.measured().correction_m(0) + cameras.measured().correction_m(1) +
          cameras.measured().correction_m(2))
             .norm() < 1e-9);
+}
+
+TEST_CASE("a camera that disagrees with several others changes no faster") {
+  BiasedCameras cameras(9, {Vec2(0.05, 0), Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)});
+  cameras.run(1, 0, {0, 1, 2, 3});
+  CHECK(cameras.measured().correction_m(0).norm() > 0.5 * CameraOffsets::kMaxChange_mps);
+  CHECK(cameras.measured().correction_m(0).norm() <= CameraOffsets::kMaxChange_mps * 1.0 + 1e-9);
 }
 
 TEST_CASE("cameras that never see the same robot are not compared") {
