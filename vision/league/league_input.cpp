@@ -71,7 +71,7 @@ void LeagueInput::handle(std::span<const std::byte> datagram, const league::Endp
   if (source_.error() != league::DecodeError::kNone) report_rejection(sender);
   if (source_.choice().refused_packets() >= next_sender_report_) report_other_sender();
   if (source_.clock_jumps() > reported_jumps_) report_clock_jump(sender);
-  report_clock(sender);
+  report_clock();
 }
 
 void LeagueInput::check_field() {
@@ -127,12 +127,12 @@ void LeagueInput::report_rejection(const league::Endpoint& sender) {
                                       to_text(sender), describe(source_.error())));
 }
 
-void LeagueInput::report_clock(const league::Endpoint& sender) {
+void LeagueInput::report_clock() {
   const SenderClock* const clock = source_.clock();
   if (!clock || clock->kind() == reported_kind_ || !clock_reports_.admit(bus_.now())) return;
   reported_kind_ = clock->kind();
   log(reported_kind_ == SenderClockKind::kSteady ? LogLevel::kInfo : LogLevel::kWarning,
-      fmt::format("the clock of sender {} {}", to_text(sender), describe(*clock)));
+      fmt::format("the clock of sender {} {}", to_text(*source_.detecting_sender()), describe(*clock)));
 }
 
 void LeagueInput::report_clock_jump(const league::Endpoint& sender) {

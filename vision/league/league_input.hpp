@@ -50,7 +50,7 @@ class LeagueInput {
   void report_rejection(const league::Endpoint& sender);
   void report_other_sender();
   void report_clock_jump(const league::Endpoint& sender);
-  void report_clock(const league::Endpoint& sender);
+  void report_clock();
 
   DdsBus& bus_;
   LeagueReception reception_;

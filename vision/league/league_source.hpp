@@ -53,6 +53,10 @@ class LeagueSource {
   Duration date_uncertainty() const { return date_uncertainty_; }
   /// The clock of the sender of the latest detections; nullptr before.
   const SenderClock* clock() const { return latest_ ? &senders_[*latest_].clock : nullptr; }
+  /// That sender; nullopt before.
+  std::optional<league::Endpoint> detecting_sender() const {
+    return latest_ ? std::optional(senders_[*latest_].endpoint) : std::nullopt;
+  }
   const SenderChoice& choice() const { return choice_; }
   const Counts& counts() const { return counts_; }
   void count_drops(DropCounters& drops) const;

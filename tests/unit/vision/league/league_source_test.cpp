@@ -141,6 +141,7 @@ TEST_CASE("two senders that are not listed are never mixed") {
   CHECK(source.choice().refused_packets() == refused + 1);
   CHECK(source.choice().refused() == kOther);
   CHECK(source.choice().used() == kSender);
+  CHECK(source.detecting_sender() == kSender);
 }
 
 TEST_CASE("a duplicate frame is dropped, and each listed sender's clock is estimated separately") {
