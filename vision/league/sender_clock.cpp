@@ -7,8 +7,9 @@
 namespace sidestep {
 namespace {
 
-/// A clock that gains or loses more than this within two seconds does not have the local clock's rate.
-constexpr Duration kMaxSteadyChange{15'000'000};
+/// A clock that gains or loses more than this within two seconds does not have the local clock's rate. With a
+/// larger value, dates of a clock that is slower by half a percent would be too uncertain to be used.
+constexpr Duration kMaxSteadyChange{4'000'000};
 /// Uncertainty of a date until the rate has been measured.
 constexpr Duration kUnprovenUncertainty{10'000'000};
 constexpr Duration kMinSteadyTime{10'000'000'000};
