@@ -36,9 +36,9 @@ class SenderClock {
 
   /// The local time of a frame's capture, never later than `arrival`. `captured` and `sent` are by the
   /// sender's clock; a `sent` before `captured` or more than 500 ms after it is from another clock and
-  /// ignored. The true time is within the uncertainty if a message in 100 ms is on time; with kArrival, if the
-  /// message's delay varies by no more. nullopt while the clock settles, and for a message that contradicts
-  /// earlier ones.
+  /// ignored. The true time is within the uncertainty if a message in 100 ms is on time; with kArrival, if
+  /// the message's delay varies by no more. nullopt while the clock settles, and for a message that
+  /// contradicts earlier ones.
   [[nodiscard]] std::optional<DatedCapture> add(Duration captured, Duration sent, Time arrival);
 
   SenderClockKind kind() const { return is_by_arrival_ ? SenderClockKind::kArrival : kind_; }

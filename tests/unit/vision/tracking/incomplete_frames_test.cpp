@@ -9,7 +9,8 @@ namespace sidestep::incomplete_frames_test {
 using namespace sidestep::test;
 
 TEST_CASE(
-    "an incomplete frame's distance shrinks by obstacle motion, errors of position and date, and the distance "
+    "an incomplete frame's distance shrinks by obstacle motion, errors of position and date, and the "
+    "distance "
     "between robots") {
   const std::uint64_t seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);
