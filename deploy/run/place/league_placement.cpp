@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <utility>
 
 #include "common/geometry/vec2.hpp"
 
@@ -54,8 +55,8 @@ LeaguePlacement::LeaguePlacement(const Scenario& scenario)
 
 void LeaguePlacement::on_frame(const league::DetectionFrame& frame, Time now) {
   if (now < look_from_) return;
-  if (!judge_at_) judge_at_ = now + kLook;
-  has_seen_frame_ = true;
+  // Each frame shows what one camera sees, so after a silence, too, one frame is not enough.
+  if (!std::exchange(has_seen_frame_, true)) judge_at_ = now + kLook;
   see(Team::kBlue, frame.blue);
   see(Team::kYellow, frame.yellow);
   for (const league::DetectedBall& ball : frame.balls) seen_balls_m_.push_back(ball.position_m);

@@ -195,6 +195,27 @@ TEST_CASE("what keeps vision from agreeing is named") {
   }
 }
 
+TEST_CASE("after a silence of vision, the frames of all cameras are awaited before the floor is judged") {
+  LeaguePlacement placement(two_robots());
+  league::DetectionFrame first, second;
+  first.blue.resize(1);
+  first.blue[0].number = 3;
+  first.blue[0].position_m = {-1, 0.5};
+  second.yellow.resize(1);
+  second.yellow[0].number = 0;
+  second.yellow[0].position_m = {1, -0.5};
+  placement.on_frame(first, kBegin);
+  CHECK_FALSE(placement.update(kBegin + 400ms));
+  CHECK(placement.update(kBegin + 1s));
+  CHECK_FALSE(placement.update(kBegin + 5s));
+  CHECK_THAT(placement.problem(), ContainsSubstring("no detections from vision since the last command"));
+  placement.on_frame(first, kBegin + 10s);
+  CHECK_FALSE(placement.update(kBegin + 10s));
+  placement.on_frame(second, kBegin + 10s + 100ms);
+  CHECK_FALSE(placement.update(kBegin + 11s));
+  CHECK(placement.is_done());
+}
+
 TEST_CASE("a robot seen at a place that is not a number is never right") {
   LeaguePlacement placement(two_robots());
   league::DetectionFrame frame;
