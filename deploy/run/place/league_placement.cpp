@@ -81,12 +81,17 @@ void LeaguePlacement::on_answer(const league::SimulatorResponse& answer) {
 
 bool LeaguePlacement::is_right(const PlacedRobot& robot) const {
   if (!robot.wanted || !robot.seen) return robot.wanted.has_value() == robot.seen.has_value();
-  const double distance_m = (robot.seen->position_m - robot.wanted->position_m).norm();
-  const double turned_rad = robot.seen->heading_rad
-                                ? std::abs(wrapped_rad(*robot.seen->heading_rad - *robot.wanted->heading_rad))
-                                : 0;
-  // Both are false for NaN.
-  return distance_m <= tolerance_m_ && turned_rad <= tolerance_rad_;
+  return is_in_place(robot) && turned_rad(robot) <= tolerance_rad_;
+}
+
+// False for a distance that is not a number.
+bool LeaguePlacement::is_in_place(const PlacedRobot& robot) const {
+  return (robot.seen->position_m - robot.wanted->position_m).norm() <= tolerance_m_;
+}
+
+double LeaguePlacement::turned_rad(const PlacedRobot& robot) {
+  if (!robot.seen->heading_rad) return 0;
+  return std::abs(wrapped_rad(*robot.seen->heading_rad - *robot.wanted->heading_rad));
 }
 
 bool LeaguePlacement::is_ball_right() const {
@@ -167,6 +172,8 @@ std::vector<std::string> LeaguePlacement::differences() const {
         texts.push_back(name + " is not seen");
       else if (!robot.wanted)
         texts.push_back(name + " is not in the scenario");
+      else if (is_in_place(robot))
+        texts.push_back(fmt::format("{} is turned by {:.2f} rad", name, turned_rad(robot)));
       else
         texts.push_back(fmt::format("{} is {:.2f} m from its place", name,
                                     (robot.seen->position_m - robot.wanted->position_m).norm()));

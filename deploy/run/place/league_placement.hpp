@@ -51,6 +51,9 @@ class LeaguePlacement {
 
   void see(Team team, const std::vector<league::DetectedRobot>& robots);
   bool is_right(const PlacedRobot& robot) const;
+  // Preconditions of both: the robot is seen, and is to be on the floor.
+  bool is_in_place(const PlacedRobot& robot) const;
+  static double turned_rad(const PlacedRobot& robot);
   bool is_ball_right() const;
   std::vector<std::string> differences() const;
   league::SimulatorCommand removal();

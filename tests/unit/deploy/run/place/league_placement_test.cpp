@@ -179,6 +179,17 @@ TEST_CASE("what keeps vision from agreeing is named") {
                                               ContainsSubstring("16 more differences") &&
                                               ContainsSubstring("the simulator does not answer"));
   }
+  SECTION("a robot that is turned at its place") {
+    LeaguePlacement placement(two_robots());
+    league::DetectionFrame frame;
+    frame.blue.resize(1);
+    frame.blue[0].number = 3;
+    frame.blue[0].position_m = {-1, 0.5};
+    frame.blue[0].heading_rad = 1.5;
+    placement.on_frame(frame, kBegin);
+    (void)placement.update(kBegin + 1s);
+    CHECK_THAT(placement.problem(), ContainsSubstring("blue robot 3 is turned by 1.50 rad"));
+  }
   SECTION("a simulator that refuses") {
     floor.obeys = false;
     floor.placement.on_answer({{{"UNKNOWN_ROBOT", "there is no blue robot 3"}}});
