@@ -160,7 +160,7 @@ TEST_CASE("a robot is not blamed for how it moves while reports are missing, and
 TEST_CASE("a negative latency is not judged, and no figure is printed") {
   const ConformanceRow row = latency_row({40ms, -51ms, 1ms, 2}, 1);
   CHECK(row.conformity == Conformity::kNotJudged);
-  CHECK(row.figures.find("ms") == std::string::npos);
+  CHECK(row.figures.find_first_of("0123456789") == std::string::npos);
   CHECK(latency_row({40ms, 0ms, 1ms, 2}, 0.01).conformity == Conformity::kPassed);
   CHECK(latency_row({40ms, 50ms, 1ms, 2}, 0.01).conformity == Conformity::kFailed);
 }
