@@ -37,7 +37,8 @@ void read_latency(ConformanceOutcome& outcome) {
 
 ConformanceOutcome examine_foreign_robot(const std::string& scenario,
                                          const std::vector<std::string>& simulator_options,
-                                         const std::string& driver_options) {
+                                         const std::string& driver_options,
+                                         const std::vector<std::string>& conformance_options) {
   const TestEndpoint endpoints;
   const TemporaryFolder folder;
   const std::string file = folder.file("scenario.yaml"), log = folder.file("log");
@@ -79,12 +80,18 @@ ConformanceOutcome examine_foreign_robot(const std::string& scenario,
                               false});
     outcome.ended = ended(kPlacing);
     if (outcome.ended == "exit code 0") {
-      group_of_processes.start(
-          {kCommand,
-           {sidestep, "conformance", file, "--driver", "league", "--domain", domain,
-            fmt::format("--robots={} --blue {} --yellow {}", driver_options, blue, yellow),
-            fmt::format("--vision=--source ssl --ssl-vision {}", group)},
-           false});
+      std::vector<std::string> command{
+          sidestep,
+          "conformance",
+          file,
+          "--driver",
+          "league",
+          "--domain",
+          domain,
+          fmt::format("--robots={} --blue {} --yellow {}", driver_options, blue, yellow),
+          fmt::format("--vision=--source ssl --ssl-vision {}", group)};
+      command.insert(command.end(), conformance_options.begin(), conformance_options.end());
+      group_of_processes.start({kCommand, command, false});
       outcome.ended = ended(kCommand);
     }
     (void)group_of_processes.terminate(3000ms);

@@ -18,9 +18,9 @@ struct ConformanceOutcome {
 
 /// Runs `sidestep league place` and `sidestep conformance --driver league` with a scenario's text, on the
 /// league's simulator of Sidestep with these options, in a DDS domain and ports of its own. `driver_options`
-/// are those of sidestep-robot.
-[[nodiscard]] ConformanceOutcome examine_foreign_robot(const std::string& scenario,
-                                                       const std::vector<std::string>& simulator_options,
-                                                       const std::string& driver_options);
+/// are those of sidestep-robot, `conformance_options` more of the latter command.
+[[nodiscard]] ConformanceOutcome examine_foreign_robot(
+    const std::string& scenario, const std::vector<std::string>& simulator_options,
+    const std::string& driver_options, const std::vector<std::string>& conformance_options = {});
 
 }  // namespace sidestep

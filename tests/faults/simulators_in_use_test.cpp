@@ -21,6 +21,7 @@ struct SimulatorRow {
   std::vector<std::string> traits;  ///< options of our simulator
   std::vector<std::string> keys;    ///< lines of a scenario
   std::string driver_options;
+  std::vector<std::string> conformance_options;
 };
 
 /// The parts of a cell that are code.
@@ -41,23 +42,32 @@ std::vector<std::string> words_in(const std::string& text) {
   return words;
 }
 
-/// The rows of the table: name | traits | keys of the scenario | options of sidestep-robot.
+/// The words of all options in a cell.
+std::vector<std::string> options_in(const std::string& cell) {
+  std::vector<std::string> options;
+  for (const std::string& option : code_in(cell)) {
+    for (const std::string& word : words_in(option)) options.push_back(word);
+  }
+  return options;
+}
+
+/// The rows of the table: name | traits | keys of the scenario | options of sidestep-robot | options of
+/// conformance.
 std::vector<SimulatorRow> rows_of_readme() {
   const std::string page = shipped("trial/conformance/README.md");
   const auto begin = page.find(kSection);
   REQUIRE(begin != std::string::npos);
   std::istringstream lines(page.substr(begin + std::string(kSection).size()));
   std::vector<SimulatorRow> rows;
+  bool is_below_heading = false;
   for (std::string line; std::getline(lines, line) && !line.starts_with("## ");) {
-    if (!line.starts_with("| ") || line.find('`') == std::string::npos) continue;
+    is_below_heading = is_below_heading || line.starts_with("|---");
+    if (!line.starts_with("| ") || !is_below_heading) continue;
     std::vector<std::string> cells;
     std::istringstream text(line.substr(1));
     for (std::string cell; std::getline(text, cell, '|');) cells.push_back(cell);
-    REQUIRE(cells.size() == 4);
-    SimulatorRow row{cells[0], {}, code_in(cells[2]), ""};
-    for (const std::string& option : code_in(cells[1])) {
-      for (const std::string& word : words_in(option)) row.traits.push_back(word);
-    }
+    REQUIRE(cells.size() == 5);
+    SimulatorRow row{cells[0], options_in(cells[1]), code_in(cells[2]), "", options_in(cells[4])};
     for (const std::string& option : code_in(cells[3]))
       row.driver_options += (row.driver_options.empty() ? "" : " ") + option;
     rows.push_back(row);
@@ -82,8 +92,8 @@ std::string scenario_of(const SimulatorRow& row, const std::string& name) {
 void try_row(FigureTable& table, const SimulatorRow& row) {
   const std::string examined = row.name + ": conformance", driven = row.name + ": eleven robots";
   measure(table, examined, [&] {
-    const auto outcome =
-        examine_foreign_robot(scenario_of(row, "league/lone-robot"), row.traits, row.driver_options);
+    const auto outcome = examine_foreign_robot(scenario_of(row, "league/lone-robot"), row.traits,
+                                               row.driver_options, row.conformance_options);
     MeasuredRun result{examined, outcome.ended + ", " + outcome.latency_row, {}};
     if (outcome.ended != "exit code 0") result.misses.push_back("\n" + outcome.output);
     return result;
