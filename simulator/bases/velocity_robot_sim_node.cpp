@@ -92,8 +92,11 @@ void VelocityRobotSimNode::publish_truth() {
   world_.fill(truth_message_);
   truth_message_.valid_at_ns(to_ns(clock_.clock(world_.time())));
   for (msg::TrueRobotState& robot : truth_message_.robots()) {
-    if (robot.disturbance_end_ns() >= 0)
-      robot.disturbance_end_ns(to_ns(clock_.clock(time_from_ns(robot.disturbance_end_ns()))));
+    if (robot.disturbance_end_ns() < 0) continue;
+    DatedDisturbance& disturbance = disturbances_[robot.robot()];
+    if (const std::int64_t end_ns = robot.disturbance_end_ns(); disturbance.simulated_ns != end_ns)
+      disturbance = {end_ns, to_ns(clock_.clock(time_from_ns(end_ns)))};
+    robot.disturbance_end_ns(disturbance.real_ns);
   }
   truth_message_.simulator(kSender);
   truth_message_.header().sender(kSender);

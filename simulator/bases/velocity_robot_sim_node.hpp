@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <unordered_map>
 #include <vector>
 
 #include "common/log/log_event.hpp"
@@ -59,6 +61,11 @@ class VelocityRobotSimNode {
     Time captured_at{}, publish_at{};  ///< in simulated time
     msg::DetectionFrame message;
   };
+  /// The end of a robot's latest disturbance. It is converted to real time only once, because the clock
+  /// forgets the speeds of long ago.
+  struct DatedDisturbance {
+    std::int64_t simulated_ns = -1, real_ns = -1;
+  };
   void wake();
   void capture();
   void publish_frames();
@@ -79,6 +86,7 @@ class VelocityRobotSimNode {
   Writer<msg::DetectionFrame> detections_;
   Writer<msg::GroundTruth> truth_;
   msg::GroundTruth truth_message_;
+  std::unordered_map<RobotId, DatedDisturbance> disturbances_;
   Time truth_due_;
   Time advanced_at_;  ///< real time at which the floor was last advanced
   std::uint64_t reported_contacts_ = 0;

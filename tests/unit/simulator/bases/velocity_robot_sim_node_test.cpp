@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/bases/velocity_robot_sim_node.hpp"
 
+#include <cmath>
+#include <set>
+
 #include "common/messaging/sim/bus.hpp"
 #include "tests/catch.hpp"
 
@@ -100,6 +103,24 @@ TEST_CASE("a simulation that was paused for long continues where it was, at its 
   bus.pause(kBegin + 7s, 0);
   network.run_until(kBegin + 9s);
   CHECK(to_seconds(node.simulated_now() - before) == Approx(1).margin(0.01));
+}
+
+TEST_CASE("the time at which a robot was placed stays the same however often the speed then changes") {
+  SimNetwork network(1, kBegin, {});
+  SimBus bus(network), observer(network);
+  std::set<std::int64_t> ends_ns;
+  observer.subscribe<msg::GroundTruth>(topics::kTruth, [&](const auto& truth) {
+    for (const auto& robot : truth.robots()) {
+      if (robot.disturbance_end_ns() >= 0) ends_ns.insert(robot.disturbance_end_ns());
+    }
+  });
+  const PaceSettings pace{.speeds = {0.5, 1}, .speed_duration = 100ms};
+  VelocityRobotSimNode node(bus, one_robot(), {.pace = pace}, 7, 1);
+  network.run_until(kBegin + 250ms);
+  node.world_now().place(0, {1, 1}, 0);
+  network.run_until(kBegin + 5s);
+  REQUIRE(ends_ns.size() == 1);
+  CHECK(std::abs(to_seconds(time_from_ns(*ends_ns.begin()) - kBegin) - 0.25) < 0.003);
 }
 
 TEST_CASE("robots can start elsewhere than the scenario says") {
