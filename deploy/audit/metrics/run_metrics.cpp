@@ -131,8 +131,10 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
       continue;
     }
     max_reference_error_m_ = std::max(max_reference_error_m_, state.reference_error_m());
-    place(*robot, {state.x_m(), state.y_m()}, std::hypot(state.vx_mps(), state.vy_mps()),
-          {scenario_.goal_tolerance_m, kAtRest_mps}, at);
+    const Vec2 position_m(state.x_m(), state.y_m());
+    const double speed_mps = std::hypot(state.vx_mps(), state.vy_mps());
+    place(*robot, position_m, speed_mps, {scenario_.goal_tolerance_m, kAtRest_mps}, at);
+    robot->sighting = {state.robot(), at, position_m, speed_mps};
   }
   floor_.on_truth(truth);
 }
@@ -157,6 +159,10 @@ void RunMetrics::on_world_state(const msg::WorldState& world) {
     seen_at_ = at;
     place(*robot, position_m, speed_mps, {scenario_.goal_tolerance_m + kSeenTolerance_m, kSeenAtRest_mps},
           at);
+    // Until vision drops it, a robot that is no longer seen is where the last observation leads.
+    const Vec2 observed_m(state.observed_x_m(), state.observed_y_m());
+    if (observed_m.allFinite() && is_valid_time(state.observed_at_ns()))
+      robot->sighting = {state.robot(), time_from_ns(state.observed_at_ns()), observed_m, speed_mps};
   }
 }
 
@@ -165,7 +171,6 @@ void RunMetrics::place(RobotRecord& robot, const Vec2& position_m, double speed_
   floor_.place(static_cast<std::size_t>(&robot - robots_.data()), {at, position_m, speed_mps});
   robot.position_m = position_m;
   robot.speed_mps = speed_mps;
-  robot.seen_at = at;
   robot.is_at_rest = speed_mps < limits.speed_mps;
   const bool is_settled = distance_to_go_m(robot) <= limits.distance_m && robot.is_at_rest;
   if (!is_settled)

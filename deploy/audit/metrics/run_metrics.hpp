@@ -116,7 +116,7 @@ class RunMetrics {
     const RobotSpec* spec = nullptr;
     Vec2 position_m{0, 0};
     double speed_mps = 0;
-    std::optional<Time> seen_at;  ///< when it was there; nullopt: it has not been seen
+    std::optional<RobotSighting> sighting;  ///< nullopt: it has not been seen
     bool is_at_rest = true;
     std::optional<Time> settled_since;  ///< time since which it has been nearly at rest at the last goal
     std::vector<msg::AgentStatus> incarnations;  ///< the last status of each incarnation of its agent, sorted

@@ -32,7 +32,7 @@ std::uint64_t sum(const std::vector<msg::AgentStatus>& incarnations,
 std::vector<RobotSighting> RunMetrics::sightings() const {
   std::vector<RobotSighting> result;
   for (const RobotRecord& robot : robots_) {
-    if (robot.seen_at) result.push_back({robot.spec->id, *robot.seen_at, robot.position_m, robot.speed_mps});
+    if (robot.sighting) result.push_back(*robot.sighting);
   }
   return result;
 }

@@ -592,11 +592,17 @@ TEST_CASE("sightings are the latest places of robots that were seen, by ground t
   world.valid_at_ns(to_ns(after(1)));
   world.robots().emplace_back().robot(7);
   world.robots()[0].x_m(0.25);
+  world.robots()[0].observed_x_m(0.2);
+  world.robots()[0].observed_at_ns(to_ns(after(0.9)));
+  metrics.on_world_state(world);
+  // The robot is not seen any more, and vision predicts where it is.
+  world.valid_at_ns(to_ns(after(1.5)));
+  world.robots()[0].x_m(0.3);
   metrics.on_world_state(world);
   REQUIRE(metrics.sightings().size() == 1);
   CHECK(metrics.sightings()[0].robot == 7);
-  CHECK(metrics.sightings()[0].position_m == Vec2(0.25, 0));
-  CHECK(metrics.sightings()[0].at == after(1));
+  CHECK(metrics.sightings()[0].position_m == Vec2(0.2, 0));
+  CHECK(metrics.sightings()[0].at == after(0.9));
   metrics.on_truth(truth(1, 2, {body(3, 0.5, 0, 1.5), body(7, 0.75, 1)}));
   REQUIRE(metrics.sightings().size() == 2);
   CHECK(metrics.sightings()[0].speed_mps == Approx(1.5));
