@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/conformance/conformance_command.hpp"
 
+#include <chrono>
 #include <csignal>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,6 +14,7 @@
 #include "common/file/console.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "common/messaging/rules_exchange.hpp"
+#include "common/motion/time_to_rest.hpp"
 #include "common/process/process.hpp"
 #include "common/process/process_identity.hpp"
 #include "common/process/stop_signals.hpp"
@@ -56,7 +58,7 @@ const RobotSpec& only_robot(const Scenario& scenario) {
 /// Starts the processes that move the robot, and vision, unless they are already running.
 class Floor {
  public:
-  explicit Floor(const ConformanceOptions& options)
+  Floor(const ConformanceOptions& options, const MotionLimits& limits)
       : group_(folder_.file("log")), notices_(folder_.file("log")) {
     if (options.driver == kRunning) return;
     FloorOptions floor = options.floor;
@@ -72,7 +74,11 @@ class Floor {
       if (!options.dds.keys.empty()) argv.insert(argv.end(), {"--keys", options.dds.keys});
       if (options.dds.insecure) argv.emplace_back("--insecure");
       argv.insert(argv.end(), process.arguments.begin(), process.arguments.end());
-      group_.start({process.name, argv, false});
+      ChildSpec child{process.name, argv};
+      // However the examination ends, the robot comes to rest first.
+      if (process.program == "sidestep-robot")
+        child.rest_time = std::chrono::ceil<std::chrono::milliseconds>(time_to_rest(limits));
+      group_.start(child);
     }
     driver_ = robots_process(floor).name;
   }
@@ -129,7 +135,7 @@ int examine(const ConformanceOptions& options) {
   const RulesExchange rules(bus, robot.id, SharedRules(scenario), [](const RulesMismatch& mismatch) {
     fmt::print(stderr, "{}\n", describe(mismatch));
   });
-  Floor floor(options);
+  Floor floor(options, scenario.limits);
   ConformanceSettings settings;
   settings.max_silence_m = options.silence_m;
   if (can_stop_driver(options.driver))
