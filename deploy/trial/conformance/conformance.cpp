@@ -36,13 +36,14 @@ void Conformance::end_step() {
   const std::span rows = std::span(report_.rows).subspan(before_step_.rows.size());
   // A robot that does not know when its motors respond would not be judged again.
   const bool is_repeated =
-      !context_.is_late && attempt_ < kAttempts &&
+      !was_late_ && attempt_ < kAttempts &&
       std::ranges::find(rows, Conformity::kNotJudged, &ConformanceRow::conformity) != rows.end() &&
       std::ranges::find(rows, Conformity::kFailed, &ConformanceRow::conformity) == rows.end();
   probe_.reset_gap();
   if (is_repeated) {
     ++attempt_;
     report_ = before_step_;
+    context_.is_late = was_late_;
     steps_[step_] = std::move(conformance_steps(scenario_, settings_)[step_]);
     return;
   }
@@ -51,6 +52,7 @@ void Conformance::end_step() {
   step_ = is_last ? steps_.size() : step_ + 1;
   attempt_ = 1;
   before_step_ = report_;
+  was_late_ = context_.is_late;
 }
 
 std::string Conformance::activity() const {

@@ -43,6 +43,7 @@ class Conformance {
   std::size_t step_ = 0;
   int attempt_ = 1;
   ConformanceReport before_step_;  ///< without the rows and figures of the current step
+  bool was_late_ = false;          ///< ConformanceContext::is_late before the current step
 };
 
 }  // namespace sidestep
