@@ -112,10 +112,13 @@ std::optional<league::SimulatorCommand> LeaguePlacement::update(Time now) {
   differences_ = differences();
   is_done_ = differences_.empty();
   if (is_done_) return std::nullopt;
-  league::SimulatorCommand command;
-  if (!has_removed_wrong_) command = removal();
-  has_removed_wrong_ = !command.robots.empty();
-  if (!has_removed_wrong_) command = placement();
+  bool removes = !has_removed_wrong_;
+  league::SimulatorCommand command = removes ? removal() : placement();
+  if (command.robots.empty() && !command.ball) {
+    removes = !removes;
+    command = removes ? removal() : placement();
+  }
+  has_removed_wrong_ = removes;
   for (auto& team : robots_) {
     for (PlacedRobot& robot : team) robot.seen.reset();
   }

@@ -178,6 +178,9 @@ TEST_CASE("what keeps vision from agreeing is named") {
     CHECK_THAT(floor.placement.problem(), ContainsSubstring("blue robot 0 is not in the scenario") &&
                                               ContainsSubstring("16 more differences") &&
                                               ContainsSubstring("the simulator does not answer"));
+    // No robot is to be placed, so the wrong ones are to be removed in each command.
+    CHECK(floor.commands.size() > 3);
+    for (const league::SimulatorCommand& command : floor.commands) CHECK(command.robots.size() == 20);
   }
   SECTION("a robot that is turned at its place") {
     LeaguePlacement placement(two_robots());
