@@ -143,7 +143,7 @@ MeasuredRun end_run(const EndingCause& cause, const StrangeBase& base, Duration 
   const bool is_limit = cause.process.empty();
   ExternalSimulatorRun floor(
       shipped_scenario("league/two-teams-22"), base.options(),
-      is_limit ? std::vector<std::string>{"--seconds", fmt::format("{:.2f}", 2 + to_seconds(delay))}
+      is_limit ? std::vector<std::string>{"--seconds", fmt::format("{:.2f}", 3 + to_seconds(delay))}
                : std::vector<std::string>{});
   LaunchedRun& run = floor.run();
   std::optional<Time> began;
