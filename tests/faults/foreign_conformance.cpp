@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/faults/foreign_conformance.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
 #include <fstream>
@@ -21,12 +22,17 @@ using namespace std::chrono_literals;
 constexpr auto kTimeout = 240s;
 constexpr const char *kCommand = "conformance", *kPlacing = "placing";
 
+const std::regex& latency_pattern() {
+  static const std::regex pattern("(passed|FAILED|not judged) +latency +(.*)");
+  return pattern;
+}
+
 void read_latency(ConformanceOutcome& outcome) {
-  const std::regex row("(passed|failed|not judged) +latency +(.*)"), figure("obey after (-?[0-9.]+) ms");
+  const std::regex figure("obey after (-?[0-9.]+) ms");
   std::istringstream lines(outcome.output);
   std::smatch match;
   for (std::string line; std::getline(lines, line);) {
-    if (!std::regex_search(line, match, row)) continue;
+    if (!std::regex_search(line, match, latency_pattern())) continue;
     outcome.latency_row = match[2];
     outcome.is_latency_judged = match[1] != "not judged";
     if (std::regex_search(outcome.latency_row, match, figure)) outcome.latency_ms = std::stod(match[1]);
@@ -38,7 +44,8 @@ void read_latency(ConformanceOutcome& outcome) {
 ConformanceOutcome examine_foreign_robot(const std::string& scenario,
                                          const std::vector<std::string>& simulator_options,
                                          const std::string& driver_options,
-                                         const std::vector<std::string>& conformance_options) {
+                                         const std::vector<std::string>& conformance_options,
+                                         ExaminedUntil until) {
   const TestEndpoint endpoints;
   const TemporaryFolder folder;
   const std::string file = folder.file("scenario.yaml"), log = folder.file("log");
@@ -64,9 +71,15 @@ ConformanceOutcome examine_foreign_robot(const std::string& scenario,
   {
     ProcessGroup group_of_processes(log);
     group_of_processes.start({"foreign simulator", simulator, false});
+    const auto is_enough = [&] {
+      return until == ExaminedUntil::kLatency &&
+             std::ranges::any_of(group_of_processes.last_lines(kCommand), [](const std::string& line) {
+               return std::regex_search(line, latency_pattern());
+             });
+    };
     const auto ended = [&](const std::string& name) {
       const auto deadline = std::chrono::steady_clock::now() + kTimeout;
-      while (std::chrono::steady_clock::now() < deadline) {
+      while (std::chrono::steady_clock::now() < deadline && !is_enough()) {
         for (const ChildEvent& event : group_of_processes.poll(20ms)) {
           if (event.name == name) return event.reason;
         }
@@ -94,7 +107,7 @@ ConformanceOutcome examine_foreign_robot(const std::string& scenario,
       group_of_processes.start({kCommand, command, false});
       outcome.ended = ended(kCommand);
     }
-    (void)group_of_processes.terminate(3000ms);
+    (void)group_of_processes.terminate(10s);
   }
   outcome.output = text_of(log);
   read_latency(outcome);

@@ -72,11 +72,11 @@ void measure_latency(FigureTable& table, const Rates& rates) {
   const std::string row = fmt::format("rate {}, conformance", text_of_rates(rates));
   measure(table, row, [&] {
     const auto outcome = examine_foreign_robot(shipped_scenario("league/lone-robot"), clock_options(rates),
-                                               driver_options(rates));
-    MeasuredRun result{row, outcome.ended + ", " + outcome.latency_row, {}};
+                                               driver_options(rates), {}, ExaminedUntil::kLatency);
+    MeasuredRun result{row, outcome.latency_row, {}};
     if (outcome.is_latency_judged && outcome.latency_ms && !is_latency_right(*outcome.latency_ms, rates))
       result.misses.push_back(fmt::format("{:.0f} ms", *outcome.latency_ms));
-    if (outcome.latency_row.empty()) result.misses.emplace_back("no row of latency");
+    if (outcome.latency_row.empty()) result.misses.push_back("no row of latency, " + outcome.ended);
     if (outcome.is_latency_judged && !outcome.latency_ms)
       result.misses.emplace_back("judged without a figure");
     return result;
