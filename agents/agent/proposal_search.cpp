@@ -2,7 +2,7 @@
 #include "agents/agent/proposal_search.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <span>
 
 #include "agents/agent/planning_distances.hpp"
 #include "agents/safety/creep_search.hpp"
@@ -29,7 +29,8 @@ SearchResult ProposalSearch::find(const SearchQuery& query, const Version& base,
 }
 
 SearchResult ProposalSearch::creep(const SearchQuery& query, TrajectoryIndex& others, Rng& rng) {
-  const std::vector<Vec2> away = accelerations_away(query, required_separation_m(scratch_.rules));
+  const CreepAccelerations creeps = accelerations_away(query, required_separation_m(scratch_.rules));
+  const std::span<const Vec2> away = creeps.all();
   if (away.empty()) return {};
   SearchQuery creeping = query;
   creeping.desired_mps2 = away.front();
