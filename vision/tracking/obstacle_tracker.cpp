@@ -22,7 +22,7 @@ constexpr double kGateDeviations = 5;
 constexpr double kRadiusGain = 0.3;
 
 void fill(msg::TrackedObstacle& message, std::uint32_t number, Time observed_at, double radius_m,
-          const ConstantVelocityFilter<2>& filter) {
+          const ConstantVelocityFilter<2>& filter, double variance_m2) {
   message.obstacle(number);
   message.observed_at_ns(to_ns(observed_at));
   message.x_m(filter.position().x());
@@ -30,7 +30,7 @@ void fill(msg::TrackedObstacle& message, std::uint32_t number, Time observed_at,
   message.vx_mps(filter.velocity().x());
   message.vy_mps(filter.velocity().y());
   message.radius_m(radius_m);
-  message.position_variance_m2(filter.covariance()(0, 0));
+  message.position_variance_m2(variance_m2);
 }
 
 /// Distance of the observed edge from the frame's nearest robot; 0 without robots.
@@ -117,8 +117,7 @@ double ObstacleTracker::predicted_distance_m(const Track& track, Time at, const 
 
 /// Maximum distance from the last estimate at which the obstacle can be observed in a frame.
 double ObstacleTracker::gate_m(const Track& track, const Frame& frame) const {
-  const double deviation =
-      std::sqrt(track.filter.covariance()(0, 0)) + std::sqrt(2.0) * settings_.position_noise_m;
+  const double deviation = std::sqrt(variance_m2(track)) + std::sqrt(2.0) * settings_.position_noise_m;
   const Duration age = std::chrono::abs(frame.captured_at() - track.observed_at) + track.date_uncertainty +
                        frame.date_uncertainty();
   return settings_.max_speed_mps * to_seconds(age) + kGateDeviations * deviation;
@@ -164,8 +163,7 @@ double ObstacleTracker::min_distance_m(const Track& track, Time t) const {
   double min_squared = std::numeric_limits<double>::infinity();
   for (const Vec2& robot : robots_m_)
     min_squared = std::min(min_squared, (track.filter.position() - robot).squaredNorm());
-  return std::sqrt(min_squared) - track.radius_m -
-         kObstacleSigmas * std::sqrt(track.filter.covariance()(0, 0)) -
+  return std::sqrt(min_squared) - track.radius_m - kObstacleSigmas * std::sqrt(variance_m2(track)) -
          settings_.max_speed_mps * std::abs(to_seconds(t - track.earliest()));
 }
 
@@ -189,7 +187,8 @@ void ObstacleTracker::list_at(Time t, std::span<const msg::TrackedRobot> robots,
   list.obstacles().resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Track& track = *listed_[i].track;
-    fill(list.obstacles()[i], track.number, track.earliest(), track.radius_m, track.filter);
+    fill(list.obstacles()[i], track.number, track.earliest(), track.radius_m, track.filter,
+         variance_m2(track));
   }
 }
 

@@ -32,6 +32,11 @@ class ObstacleTracker {
   /// Updates the tracks from a usable frame. Frames may come in any order; an observation older than a
   /// track's last one does not change it.
   void update(const Frame& frame);
+  /// From now on, all positions may also be off by errors with this standard deviation, however often an
+  /// obstacle is observed: those of cameras that disagree.
+  void set_camera_error(double position_error_m) {
+    camera_variance_m2_ = position_error_m * position_error_m;
+  }
   /// Forgets all obstacles, but remembers which numbers have been used.
   void forget();
   /// Writes the confirmed tracks at a time, nearest to a robot first, and the distance up to which the list
@@ -67,6 +72,10 @@ class ObstacleTracker {
   /// used.
   void associate(const Frame& frame);
   void find_pairs(const Frame& frame);
+  /// Variance of a position on each axis.
+  double variance_m2(const Track& track) const {
+    return track.filter.covariance()(0, 0) + camera_variance_m2_;
+  }
   double predicted_distance_m(const Track& track, Time at, const Vec2& position_m) const;
   double gate_m(const Track& track, const Frame& frame) const;
   void update_track(Track& track, const Frame& frame, const ObstacleObservation& observation);
@@ -80,6 +89,7 @@ class ObstacleTracker {
   ObstacleTrackerSettings settings_;
   std::vector<Track> tracks_;
   IncompleteFrames incomplete_frames_;
+  double camera_variance_m2_ = 0;
   std::uint32_t last_number_ = 0;
   std::uint64_t rejected_ = 0;
   // Working memory.

@@ -140,8 +140,9 @@ bool Tracker::is_misplaced(const Frame& frame, const TrackState& robot) const {
   return !(speed_mps * to_seconds(frame.date_uncertainty() - kAveraged) <= settings_.max_date_error_m);
 }
 
-void Tracker::set_min_noise(double position_noise_m) {
-  settings_.robot.position_noise_m = std::max(configured_noise_m_, position_noise_m);
+void Tracker::set_camera_error(double position_error_m) {
+  settings_.robot.position_noise_m = std::max(configured_noise_m_, position_error_m);
+  obstacles_.set_camera_error(position_error_m);
 }
 
 void Tracker::forget() {

@@ -45,8 +45,9 @@ class Tracker {
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
-  /// Takes observations of robots for no more accurate than this standard deviation, if the settings do not.
-  void set_min_noise(double position_noise_m);
+  /// The standard deviation of what cameras that disagree show. Observations of robots count as no more
+  /// accurate than this. It adds to the uncertainty of obstacles.
+  void set_camera_error(double position_error_m);
   /// Forgets all observations. Call when the clock was set back: later observations would seem older.
   void forget();
   /// Adds the counts of detections that were not used.

@@ -74,7 +74,7 @@ void VisionNode::publish() {
   const Time now = bus_.now();
   if (now < next_ - period_) on_clock_set_back(next_ - now);
   offsets_.advance(period_);
-  tracker_.set_min_noise(offsets_.noise_m());
+  tracker_.set_camera_error(offsets_.noise_m());
   tracker_.world_at(now, world_);
   tracker_.obstacles_at(world_, obstacles_);
   if (!watch_.is_complete(now)) obstacles_.complete_within_m(0);

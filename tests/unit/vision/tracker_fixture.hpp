@@ -142,6 +142,7 @@ class TrackerFixture {
     tracker_.obstacles_at(world_at(t), list_);
     return list_;
   }
+  void set_camera_error(double position_error_m) { tracker_.set_camera_error(position_error_m); }
   /// Number of rejected detections.
   std::uint64_t rejected() const { return drops_of(tracker_).total(); }
   /// The robot's entry in the world state at a time, or nullptr.

@@ -41,6 +41,27 @@ const msg::TrackedObstacle* nearest(const msg::ObstacleList& list, const Vec2& t
   return best;
 }
 
+TEST_CASE("what cameras disagree by adds to the uncertainty of obstacles, however often they are seen") {
+  TrackerFixture fixture(0);
+  const auto variance_m2 = [&](int first) {
+    for (int k = first; k < first + 60; ++k) {
+      auto frame = empty_frame(0, kBegin + k * kFrame);
+      frame.obstacle_count(1);
+      frame.obstacles()[0].x_m(1);
+      frame.obstacles()[0].radius_m(0.1);
+      fixture.feed(frame);
+    }
+    const msg::ObstacleList& list = fixture.obstacles_at(kBegin + (first + 60) * kFrame);
+    REQUIRE(list.obstacles().size() == 1);
+    return list.obstacles()[0].position_variance_m2();
+  };
+  const double alone_m2 = variance_m2(0);
+  fixture.set_camera_error(0.02);
+  CHECK(variance_m2(60) == Approx(alone_m2 + 0.0004).epsilon(0.01));
+  fixture.set_camera_error(0);
+  CHECK(variance_m2(120) == Approx(alone_m2).epsilon(0.01));
+}
+
 TEST_CASE("walkers seen by two cameras keep their numbers and are reported where they were last observed") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   const double missed = GENERATE(0.0, 0.2);
