@@ -37,7 +37,7 @@ TEST_CASE("nearly all latencies are within the stated uncertainty, which grows w
   int within = 0;
   double uncertainty_s = 0;
   const double noise_m = GENERATE(0.0005, 0.003);
-  constexpr int kTrials = 50;
+  constexpr int kTrials = 1000;
   for (int seed = 1; seed <= kTrials; ++seed) {
     const LatencyFit::Result result = fit_of(18ms, noise_m, static_cast<std::uint64_t>(seed)).result();
     uncertainty_s += to_seconds(result.uncertainty) / kTrials;
