@@ -13,6 +13,8 @@ namespace {
 
 // A latency that is less certain than this is not judged.
 constexpr Duration kMaxLatencyUncertainty = std::chrono::milliseconds(5);
+// Errors of a measured latency that do not vary, and so are not part of its uncertainty.
+constexpr Duration kLatencyBias = std::chrono::milliseconds(1);
 
 const char* to_text(Conformity conformity) {
   switch (conformity) {
@@ -30,7 +32,7 @@ const char* to_text(Conformity conformity) {
 
 ConformanceRow latency_row(const MeasuredLatency& measured, double max_error_m) {
   const Duration latency = measured.lead + measured.late;
-  if (!(latency > Duration{0}))
+  if (latency < -std::max(measured.uncertainty, kLatencyBias))
     return {"latency", Conformity::kNotJudged,
             "the robot seems to move before it is commanded: vision's frames are dated wrongly; see what "
             "vision says about the sender's clock"};
@@ -38,8 +40,8 @@ ConformanceRow latency_row(const MeasuredLatency& measured, double max_error_m) 
   std::string figures = fmt::format(
       "the motors obey after {:.0f} ms, probably between {:.1f} and {:.1f} ms; the robot assumes {:.0f} ms; "
       "each millisecond of difference takes it up to {:.1f} mm off",
-      ms(latency), std::max(0.0, ms(latency - measured.uncertainty)), ms(latency + measured.uncertainty),
-      ms(measured.lead), measured.speed_mps);
+      std::max(0.0, ms(latency)), std::max(0.0, ms(latency - measured.uncertainty)),
+      std::max(0.0, ms(latency + measured.uncertainty)), ms(measured.lead), measured.speed_mps);
   const Duration late = std::chrono::abs(measured.late);
   const auto is_allowed = [&](Duration least) {
     return to_seconds(least) * measured.speed_mps <= max_error_m;

@@ -53,7 +53,10 @@ LatencyFit::Result LatencyFit::result() const {
     const double change_s = to_seconds(best(others) - late);
     square_s2 += change_s * change_s;
   }
-  return {late, from_seconds(2 * std::sqrt((starts - 1) / starts * square_s2))};
+  // Few starts show their own spread badly: the bound is that of Student's t with `starts - 1` degrees of
+  // freedom (Abramowitz and Stegun, Handbook of Mathematical Functions, 26.7.5, first order).
+  const double deviations = 2 * (1 + 1.25 / (starts - 1));
+  return {late, from_seconds(deviations * std::sqrt((starts - 1) / starts * square_s2))};
 }
 
 }  // namespace sidestep

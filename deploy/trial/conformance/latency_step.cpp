@@ -105,7 +105,8 @@ class LatencyStep final : public ConformanceStep {
         std::max(0.25 * bound_m, std::min(bound_m, to_seconds(kExact) * measured.speed_mps));
     context.is_late = !(std::abs(to_seconds(result.late)) * measured.speed_mps <= max_error_m);
     context.report.rows.push_back(latency_row(measured, max_error_m));
-    if (lead + result.late > Duration{0}) context.report.figures.latency = lead + result.late;
+    if (context.report.rows.back().conformity != Conformity::kNotJudged || lead + result.late > Duration{0})
+      context.report.figures.latency = std::max(Duration{0}, lead + result.late);
   }
 
   std::optional<Time> since_;

@@ -46,4 +46,13 @@ TEST_CASE("an uncertain latency is not judged, unless it is certainly wrong") {
   CHECK(latency_row({100ms, 18ms, 1ms, 2}, 0.03).conformity == Conformity::kFailed);
 }
 
+TEST_CASE("motors that obey at once pass, but not motors that obey before their commands") {
+  const ConformanceRow at_once = latency_row({0ms, -300us, 50us, 2}, 0.01);
+  CHECK(at_once.conformity == Conformity::kPassed);
+  CHECK_THAT(at_once.figures, ContainsSubstring("after 0 ms, probably between 0.0 and 0.0 ms"));
+  const ConformanceRow early = latency_row({0ms, -3ms, 50us, 2}, 0.01);
+  CHECK(early.conformity == Conformity::kNotJudged);
+  CHECK_THAT(early.figures, ContainsSubstring("before it is commanded"));
+}
+
 }  // namespace sidestep::conformance_row_test
