@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <memory>
-#include <utility>
 
 #include "agents/agent/obstacle_list_decoder.hpp"
 #include "agents/agent/received_page.hpp"
@@ -18,8 +17,21 @@
 namespace sidestep {
 namespace {
 
-bool is_well_formed(const msg::Proposal& message, Time now) {
-  const auto proposal = decode(message, now);
+// These functions have the same parameters: the message, the robot of its channel, and the bus that delivers
+// it.
+
+template <typename Message>
+bool is_well_formed(const Message& message, RobotId, Bus& bus) {
+  return decode(message, bus.now()).has_value();
+}
+
+bool is_well_formed(const msg::Registration& message, RobotId, Bus& bus) {
+  const auto registration = decode(message, bus.now());
+  return registration && (registration->versions || registration->asks_for_orders);
+}
+
+bool is_well_formed(const msg::Proposal& message, RobotId, Bus& bus) {
+  const auto proposal = decode(message, bus.now());
   const auto has_value = [](const auto& candidate) { return candidate.has_value(); };
   return proposal && proposal->candidate_count == message.candidate_count() &&
          std::all_of(proposal->candidates.begin(),
@@ -27,65 +39,66 @@ bool is_well_formed(const msg::Proposal& message, Time now) {
                      has_value);
 }
 
-bool is_well_formed(const msg::LedgerPage& message, Time now) {
-  const auto decodes = [now](const msg::Version& version) { return decode(version, now).has_value(); };
-  return ReceivedPage::decode(message, now) && std::ranges::all_of(message.versions(), decodes);
-}
-
-bool is_well_formed(const msg::WorldState& message, Time now) {
-  const auto decodes = [now](const msg::TrackedRobot& robot) { return decode(robot, now).has_value(); };
+bool is_well_formed(const msg::WorldState& message, RobotId, Bus& bus) {
+  const auto decodes = [now = bus.now()](const msg::TrackedRobot& robot) {
+    return decode(robot, now).has_value();
+  };
   return std::ranges::all_of(message.robots(), decodes);
 }
 
-template <typename Message>
-bool decodes(const Message& message, Time now) {
-  return decode(message, now).has_value();
+bool is_well_formed(const msg::OrderStatus& message, RobotId, Bus&) { return decode(message).has_value(); }
+
+bool is_well_formed(const msg::ObstacleList& message, RobotId, Bus&) {
+  return ObstacleListDecoder().decode(message).has_value();
+}
+
+bool is_well_formed(const msg::Feedback& message, RobotId robot, Bus& bus) {
+  return decode(message, robot, bus.now()).has_value();
+}
+
+bool is_well_formed(const msg::Command& message, RobotId robot, Bus& bus) {
+  return decode(message, robot, bus.now()).has_value();
+}
+
+bool is_well_formed(const msg::Verdict& message, RobotId robot, Bus&) {
+  return decode(message, robot).has_value();
+}
+
+/// Decodes the page for its later readers, too.
+bool is_well_formed(const msg::LedgerPage& message, RobotId, Bus& bus) {
+  const auto page = ReceivedPage::decode(message, bus.now(), bus.attachment(&message));
+  if (!page) return false;
+  std::shared_ptr<DecodedLedgerPage> decoded;
+  page->update(decoded);
+  return std::ranges::all_of(decoded->entries, &DecodedLedgerPage::Entry::is_valid);
 }
 
 }  // namespace
 
-template <typename Message>
-std::function<void(const Message&)> SentMessages::counted(
-    const Topic<Message>& topic, std::function<bool(const Message&)> is_well_formed) {
-  const std::string name = topic.name;
-  return [this, name, is_well_formed = std::move(is_well_formed)](const Message& message) {
-    if (is_well_formed(message)) return;
-    Count& count = malformed_[fmt::format("{} on {}", process_name(message.header().sender()), name)];
-    if (count.messages++ == 0) count.first_at = bus_.now();
-  };
+SentMessages::SentMessages(Bus& bus, const Scenario& scenario) : bus_(bus), begin_(bus.now()) {
+  check(topics::kRegistration);
+  check(topics::kProposal);
+  check(topics::kLedger);
+  check(topics::kCoordinator);
+  check(topics::kWorld);
+  check(topics::kOrderMemory);
+  check(topics::kAgentOrders);
+  check(topics::kOrderStatus);
+  check(topics::kObstacles);
+  for (const RobotSpec& robot : scenario.robots) {
+    check(topics::kFeedback, robot.id);
+    check(topics::kCommand, robot.id);
+    check(topics::kVerdict, robot.id);
+  }
 }
 
-SentMessages::SentMessages(Bus& bus, const Scenario& scenario) : bus_(bus), begin_(bus.now()) {
-  const auto check = [this]<typename Message>(const Topic<Message>& topic, auto is_right) {
-    bus_.subscribe(topic, counted<Message>(topic, [this, is_right](const Message& message) {
-                     return is_right(message, bus_.now());
-                   }));
-  };
-  check(topics::kRegistration, decodes<msg::Registration>);
-  check(topics::kProposal, [](const msg::Proposal& m, Time now) { return is_well_formed(m, now); });
-  check(topics::kLedger, [](const msg::LedgerPage& m, Time now) { return is_well_formed(m, now); });
-  check(topics::kCoordinator, decodes<msg::CoordinatorState>);
-  check(topics::kWorld, [](const msg::WorldState& m, Time now) { return is_well_formed(m, now); });
-  check(topics::kOrderMemory, decodes<msg::OrderMemory>);
-  check(topics::kAgentOrders, decodes<msg::OrderMemory>);
-  check(topics::kOrderStatus, [](const msg::OrderStatus& m, Time) { return decode(m).has_value(); });
-  check(topics::kObstacles, [decoder = std::make_shared<ObstacleListDecoder>()](
-                                const msg::ObstacleList& m, Time) { return decoder->decode(m).has_value(); });
-  for (const RobotSpec& spec : scenario.robots) {
-    const RobotId robot = spec.id;
-    bus_.subscribe(topics::kFeedback, robot,
-                   counted<msg::Feedback>(topics::kFeedback, [this, robot](const msg::Feedback& message) {
-                     return decode(message, robot, bus_.now()).has_value();
-                   }));
-    bus_.subscribe(topics::kCommand, robot,
-                   counted<msg::Command>(topics::kCommand, [this, robot](const msg::Command& message) {
-                     return decode(message, robot, bus_.now()).has_value();
-                   }));
-    bus_.subscribe(topics::kVerdict, robot,
-                   counted<msg::Verdict>(topics::kVerdict, [robot](const msg::Verdict& message) {
-                     return decode(message, robot).has_value();
-                   }));
-  }
+template <typename Message>
+void SentMessages::check(const Topic<Message>& topic, RobotId robot) {
+  bus_.subscribe(topic, robot, [this, name = topic.name, robot](const Message& message) {
+    if (is_well_formed(message, robot, bus_)) return;
+    Count& count = malformed_[fmt::format("{} on {}", process_name(message.header().sender()), name)];
+    if (count.messages++ == 0) count.first_at = bus_.now();
+  });
 }
 
 std::vector<std::string> SentMessages::failures() const {

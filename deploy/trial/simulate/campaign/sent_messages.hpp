@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -33,8 +32,7 @@ class SentMessages {
     Time first_at{};
   };
   template <typename Message>
-  std::function<void(const Message&)> counted(const Topic<Message>& topic,
-                                              std::function<bool(const Message&)> is_well_formed);
+  void check(const Topic<Message>& topic, RobotId robot = 0);
 
   Bus& bus_;
   Time begin_;
