@@ -125,7 +125,7 @@ struct Fault {
 /// One run, with or without the body's uncontrolled motion.
 struct Run {
   Run(const Scenario& scenario, std::uint64_t seed) : system(scenario, seed), observer(system.network()) {
-    system.on_truth([this](const msg::GroundTruth& truth) {
+    system.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       truths.push_back(moment_of(truth));
       for (; contacts < truth.contacts(); ++contacts)
         touches.push_back({truth.recent_contacts()[contacts % msg::MAX_CONTACTS], truths.size() - 1});
@@ -327,7 +327,7 @@ TEST_CASE("a carried robot is reported as displaced or no robot drives, for all 
     for (const msg::RobotNotice& notice : state.notices())
       is_named |= notice.robot() == 1 && notice.is_displaced();
   });
-  system.on_truth([&](const msg::GroundTruth& truth) {
+  system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) {
     for (const msg::TrueRobotState& robot : truth.robots())
       moves |= robot.robot() == 0 && std::hypot(robot.vx_mps(), robot.vy_mps()) > 0.1;
   });

@@ -177,7 +177,8 @@ TEST_CASE("a robot is taken off the floor and put down elsewhere while the other
   scenario.robots[3].is_absent = begins_absent;
   Disturbed run(scenario, seed);
   std::size_t seen = 0;
-  run.system.on_truth([&](const msg::GroundTruth& truth) { seen = truth.robots().size(); });
+  run.system.observer_bus().subscribe(topics::kTruth,
+                                      [&](const msg::GroundTruth& truth) { seen = truth.robots().size(); });
   run.system.run_for(std::chrono::milliseconds(1500));
   CHECK(seen == (begins_absent ? 7 : 8));
   if (!begins_absent) run.send(disturbance(3, msg::DisturbanceKind::DISTURBANCE_LIFT));

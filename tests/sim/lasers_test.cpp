@@ -92,7 +92,7 @@ TEST_CASE("a robot avoids a blind corner where no speed is safe, or reports that
   if (has_other_way) scenario.obstacles.emplace_back(Box{{-0.05, -3}, {0.05, other_low}});
   SimSystem system(scenario, 1);
   bool was_blocked = false;
-  system.on_order_status([&](const msg::OrderStatus& status) {
+  system.observer_bus().subscribe(topics::kOrderStatus, [&](const msg::OrderStatus& status) {
     if (status.block_reason() != msg::BlockReason::BLOCK_OCCLUDED_CORNER) return;
     was_blocked = true;
     CHECK(std::abs(status.blocker_x_m()) < 0.3);
@@ -120,7 +120,7 @@ TEST_CASE("a robot stops while its laser scans fail to arrive, and continues wit
     ++scans;
   });
   bool has_stopped = false, has_gone_on = false;
-  system.on_truth([&](const msg::GroundTruth& truth) {
+  system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) {
     if (truth.robots().empty() || scans == 0) return;
     const double speed_mps = std::hypot(truth.robots()[0].vx_mps(), truth.robots()[0].vy_mps());
     // The robot rests after 0.3 s without a scan, a few cycles, and the time to brake from 2 m/s.

@@ -143,7 +143,7 @@ TEST_CASE(
     incomplete += list.complete_within_m() > 1;  // complete far enough to be useful
   });
   double longest_way_m = 0;
-  system.on_truth([&](const msg::GroundTruth& truth) {
+  system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) {
     for (const msg::TrueRobotState& robot : truth.robots()) {
       const Vec2 way = Vec2(robot.x_m(), robot.y_m()) - scenario.robots.at(robot.robot()).start_m;
       longest_way_m = std::max(longest_way_m, way.norm());

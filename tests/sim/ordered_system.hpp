@@ -43,11 +43,11 @@ struct OrderedSystem {
   Time moved_at{};  ///< time at which a robot last moved
 
   OrderedSystem(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {
-    system.on_order_status([this](const msg::OrderStatus& status) {
+    system.observer_bus().subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& status) {
       statuses[status.robot()] = status;
       if (status.order_state() == msg::OrderState::ORDER_ARRIVED) arrived.insert(status.order_number());
     });
-    system.on_truth([this](const msg::GroundTruth& truth) {
+    system.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       ball_m = {truth.ball_x_m(), truth.ball_y_m()};
       for (const msg::TrueRobotState& robot : truth.robots()) {
         bodies[robot.robot()] = {{robot.x_m(), robot.y_m()}, {robot.vx_mps(), robot.vy_mps()}};
@@ -55,8 +55,9 @@ struct OrderedSystem {
           moved_at = time_from_ns(truth.valid_at_ns());
       }
     });
-    system.on_order_answer(
-        [this](const msg::OrderAnswer& answer) { answers[answer.order_number()] = answer.result(); });
+    system.observer_bus().subscribe(topics::kOrderAnswer, [this](const msg::OrderAnswer& answer) {
+      answers[answer.order_number()] = answer.result();
+    });
   }
   OrderNumber send(msg::OrderKind kind, RobotId robot, ClientId client, std::vector<Goal> goals = {}) {
     number = std::max(number + 1, static_cast<OrderNumber>(to_ns(system.now())));

@@ -35,7 +35,7 @@ class MotionWatch {
   static constexpr double kMotion_mps = 0.05;
 
   explicit MotionWatch(SimSystem& system) : system_(system) {
-    system.on_truth([this](const msg::GroundTruth& truth) {
+    system.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       for (const msg::TrueRobotState& robot : truth.robots())
         if (std::hypot(robot.vx_mps(), robot.vy_mps()) > kMotion_mps) note_motion(robot.robot());
     });

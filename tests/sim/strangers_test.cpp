@@ -71,11 +71,11 @@ Scene random_scene(std::uint64_t seed) {
 class CauseWatch {
  public:
   CauseWatch(SimSystem& system, const Scenario& scenario) : system_(system), scenario_(scenario) {
-    system.on_order_status([this](const msg::OrderStatus& status) {
+    system.observer_bus().subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& status) {
       const auto report = decode(status);
       blockages_[status.robot()] = report ? report->blockage : std::nullopt;
     });
-    system.on_truth([this](const msg::GroundTruth& truth) {
+    system.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       for (const msg::TrueRobotState& robot : truth.robots()) watch(robot);
     });
   }

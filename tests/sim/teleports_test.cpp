@@ -46,7 +46,7 @@ class TeleportRun {
       : rng_(seed),
         scenario_(random_floor(rng_)),
         system_(scenario_, seed, {}, SimSystem::kBegin, milliseconds(18 + rng_.below(120))) {
-    system_.on_truth([this](const msg::GroundTruth& truth) {
+    system_.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       for (const msg::TrueRobotState& robot : truth.robots())
         bodies_[robot.robot()] = {{robot.x_m(), robot.y_m()}, {robot.vx_mps(), robot.vy_mps()}};
     });
@@ -144,7 +144,7 @@ TEST_CASE("a robot that is put elsewhere while it drives brakes after two fixes,
   scenario.robots = {robot};
   SimSystem system(scenario, 1, {}, SimSystem::kBegin, milliseconds(40));
   State body;
-  system.on_truth([&](const msg::GroundTruth& truth) {
+  system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) {
     if (truth.robots().empty()) return;
     const msg::TrueRobotState& state = truth.robots().front();
     body = {{state.x_m(), state.y_m()}, {state.vx_mps(), state.vy_mps()}};

@@ -144,7 +144,8 @@ class LaserPictureRecorder {
     bus_.become_observer();
     bus_.observe<msg::LaserScan>(topics::kScan, *options.laser_robot,
                                  [this](const msg::LaserScan& scan) { picture_->add(scan); });
-    system.on_truth([this](const msg::GroundTruth& truth) { picture_->add(truth); });
+    system.observer_bus().subscribe(topics::kTruth,
+                                    [this](const msg::GroundTruth& truth) { picture_->add(truth); });
   }
   /// The picture; nullptr if none was requested.
   const LaserPicture* picture() const { return picture_ ? &*picture_ : nullptr; }

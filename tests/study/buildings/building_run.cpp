@@ -41,7 +41,7 @@ BuildingResult building_result(const Report& report, const TripCounts& trips, do
 BuildingResult run_building(const Scenario& scenario, Duration duration, std::uint64_t seed) {
   SimSystem system(without_goals(scenario), seed);
   DistanceMeter meter(system.begin());
-  system.on_truth([&](const msg::GroundTruth& truth) { meter.add(truth); });
+  system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) { meter.add(truth); });
   SimBus bus(system.network());
   RandomTrips trips(bus, scenario, seed);
   system.run_for(kStartup);

@@ -171,7 +171,7 @@ CornerResult run_corner(Scenario scenario, std::uint64_t seed, bool has_laser) {
   if (!has_laser) scenario.laser.reset();
   SimSystem system(scenario, seed);
   CornerResult result;
-  system.on_order_status([&](const msg::OrderStatus& status) {
+  system.observer_bus().subscribe(topics::kOrderStatus, [&](const msg::OrderStatus& status) {
     result.was_blocked |= status.block_reason() == msg::BlockReason::BLOCK_OCCLUDED_CORNER;
   });
   result.has_arrived = system.run_until_arrived(system.begin() + from_seconds(scenario.time_limit_s));

@@ -128,7 +128,8 @@ TraversalResult traverse_with_search(const Scenario& scenario, std::uint64_t see
     traversals[status.robot()] = status.goal_index();
   });
   InterpolatedMeter interpolated(scenario.robots.size());
-  system.on_truth([&](const msg::GroundTruth& truth) { interpolated.add(truth); });
+  system.observer_bus().subscribe(topics::kTruth,
+                                  [&](const msg::GroundTruth& truth) { interpolated.add(truth); });
   while (!system.metrics().granting_since()) {
     if (system.now() > system.begin() + kStartDeadline)
       throw std::runtime_error("the coordinator did not grant anything within 20 s");

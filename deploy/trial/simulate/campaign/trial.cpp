@@ -202,7 +202,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   result.robot_s = result.robots * to_seconds(trial.duration);
   SimSystem system(trial.scenario, trial.seed, trial.plan.clocks, SimSystem::kBegin, trial.base_latency);
   DistanceMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecoveryTime, trial.duration));
-  system.on_truth([&](const msg::GroundTruth& truth) { meter.add(truth); });
+  system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) { meter.add(truth); });
   const SentMessages sent(system.observer_bus(), trial.scenario);
   if (hooks.on_start) hooks.on_start(system);
   FaultPlayer player(system, trial.scenario, trial.plan);

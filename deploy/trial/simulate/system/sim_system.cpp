@@ -109,10 +109,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
   watch_second_simulators(observer_bus_);
   metrics_.set_auditor(auditor_);
   listen(observer_bus_, scenario_, auditor_);
-  observer_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
-    metrics_.on_truth(truth);
-    if (on_truth_) on_truth_(truth);
-  });
+  observer_bus_.subscribe<msg::GroundTruth>(topics::kTruth,
+                                            [this](const auto& truth) { metrics_.on_truth(truth); });
   observer_bus_.subscribe<msg::AgentStatus>(topics::kStatus,
                                             [this](const auto& status) { metrics_.on_status(status); });
   observer_bus_.subscribe<msg::OrderStatus>(topics::kOrderStatus,
@@ -222,14 +220,6 @@ void SimSystem::pause(const std::string& process, Duration duration, std::size_t
 void SimSystem::send(const Order& order) {
   auto message = encode(order);
   order_writer_.publish(message, now());
-}
-
-void SimSystem::on_order_answer(std::function<void(const msg::OrderAnswer&)> callback) {
-  observer_bus_.subscribe<msg::OrderAnswer>(topics::kOrderAnswer, std::move(callback));
-}
-
-void SimSystem::on_order_status(std::function<void(const msg::OrderStatus&)> callback) {
-  observer_bus_.subscribe<msg::OrderStatus>(topics::kOrderStatus, std::move(callback));
 }
 
 void SimSystem::set_clock(const std::string& process, Duration offset) {

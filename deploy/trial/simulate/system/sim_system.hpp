@@ -73,9 +73,6 @@ class SimSystem {
   void place(RobotId robot, const Vec2& position_m, double heading_rad);
   /// Publishes a client's order.
   void send(const Order& order);
-  /// Calls back with every answer of a coordinator to an order, and with every status of an order.
-  void on_order_answer(std::function<void(const msg::OrderAnswer&)> callback);
-  void on_order_status(std::function<void(const msg::OrderStatus&)> callback);
   /// Sets how far the clock of a process and all its later incarnations is ahead of true time.
   void set_clock(const std::string& process, Duration offset);
   /// Sets the quality of the link between two processes, for all their incarnations.
@@ -89,8 +86,6 @@ class SimSystem {
   RunMetrics& metrics() { return metrics_; }
   /// Receives every message of the system's processes, even lost ones, without delay.
   Bus& observer_bus() { return observer_bus_; }
-  /// Calls back with every ground truth, after the metrics have received it.
-  void on_truth(std::function<void(const msg::GroundTruth&)> callback) { on_truth_ = std::move(callback); }
   const RunMetrics& metrics() const { return metrics_; }
   using OnProcessEvent = std::function<void(const std::string& process, const LogEvent&)>;
   /// Calls back with the events of all processes that have at least this level.
@@ -129,7 +124,6 @@ class SimSystem {
   std::map<std::string, Time> started_at_;
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::optional<Time> arrived_since_;
-  std::function<void(const msg::GroundTruth&)> on_truth_;
   LogLevel min_level_ = LogLevel::kOff;
   OnProcessEvent on_event_;
   bool keeps_duplicates_running_ = false;

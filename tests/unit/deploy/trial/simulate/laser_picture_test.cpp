@@ -36,7 +36,7 @@ TEST_CASE("a picture of a laser's view shows the scan, where people may step out
   listener.use_rules(SharedRules(scenario).fingerprint(), [](const auto&, const auto&) {});
   listener.subscribe<msg::LaserScan>(topics::kScan, 7,
                                      [&](const msg::LaserScan& scan) { picture.add(scan); });
-  system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
+  system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) { picture.add(truth); });
   const std::string before = picture.svg();
   CHECK(count(before, "<polygon") == 1);  // the wall
   CHECK(count(before, "<line") == 0);

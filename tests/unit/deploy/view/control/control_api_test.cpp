@@ -36,7 +36,7 @@ struct ControlledRun {
   msg::GroundTruth truth;
 
   ControlledRun() {
-    system.on_truth([this](const msg::GroundTruth& t) { truth = t; });
+    system.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& t) { truth = t; });
     system.run_for(2s);
   }
   WebResponse request(const std::string& method, const std::string& path, const std::string& body = "",

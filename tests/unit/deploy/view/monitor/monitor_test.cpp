@@ -81,7 +81,7 @@ struct MonitoredRun {
 
   explicit MonitoredRun(bool knows_scenario = true, bool is_recording = false)
       : monitor((bus.become_observer(), bus), settings(knows_scenario, is_recording)) {
-    system.on_truth([this](const msg::GroundTruth& t) { truth = t; });
+    system.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& t) { truth = t; });
     monitor.add_viewer(viewer);
     call_periodically(bus, Monitor::kFramePeriod, [this] {
       monitor.take_snapshot();

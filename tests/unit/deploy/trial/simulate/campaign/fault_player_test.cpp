@@ -84,7 +84,8 @@ TEST_CASE("the operator places a robot even if its agent is dead when the first 
                                  20s);
   SimSystem system(scenario, 1);
   std::size_t on_floor = 0;
-  system.on_truth([&](const msg::GroundTruth& truth) { on_floor = truth.robots().size(); });
+  system.observer_bus().subscribe(topics::kTruth,
+                                  [&](const msg::GroundTruth& truth) { on_floor = truth.robots().size(); });
   FaultPlayer player(system, scenario, plan);
   player.run_until(2900ms);
   CHECK(on_floor == 1);
@@ -102,7 +103,8 @@ TEST_CASE("the operator places a robot whose lifting is delayed by a simulator p
       20s);
   SimSystem system(scenario, 1);
   std::size_t on_floor = 0;
-  system.on_truth([&](const msg::GroundTruth& truth) { on_floor = truth.robots().size(); });
+  system.observer_bus().subscribe(topics::kTruth,
+                                  [&](const msg::GroundTruth& truth) { on_floor = truth.robots().size(); });
   FaultPlayer player(system, scenario, plan);
   player.run_until(4100ms);
   CHECK(on_floor == 1);

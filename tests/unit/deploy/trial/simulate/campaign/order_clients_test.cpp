@@ -57,7 +57,7 @@ TEST_CASE("a trial does not fail if a carried robot pushes a held robot") {
   carry.duration = 5s;
   msg::Disturbance message = encode(carry);
   Vec2 place_m{-2, -1.5};
-  trial.system.on_truth([&](const msg::GroundTruth& truth) {
+  trial.system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) {
     for (const msg::TrueRobotState& body : truth.robots()) {
       if (body.robot() == 0) place_m = {body.x_m(), body.y_m()};
     }
@@ -79,7 +79,7 @@ TEST_CASE("a trial does not fail while a held robot without power coasts to rest
   switch_off.kind = msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF;
   trial.system.disturb(encode(switch_off));
   double speed_mps = 0;
-  trial.system.on_truth([&](const msg::GroundTruth& truth) {
+  trial.system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) {
     for (const msg::TrueRobotState& body : truth.robots())
       if (body.robot() == 0) speed_mps = std::hypot(body.vx_mps(), body.vy_mps());
   });
