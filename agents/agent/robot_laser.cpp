@@ -21,35 +21,31 @@ Vec2 position_at(const Trajectory& trajectory, Time t) {
 
 RobotLaser::RobotLaser(const FloorSpec& floor, const FloorRules& rules)
     : rules_(rules),
-      laser_(*floor.laser),
-      settings_{.position_error_m = floor.tracking_bound_m, .heading_error_rad = kMaxHeadingError_rad},
+      sight_(*floor.laser, rules,
+             {.position_error_m = floor.tracking_bound_m, .heading_error_rad = kMaxHeadingError_rad}),
       max_clock_difference_(max_clock_difference(floor.clock_bound_s)),
       max_person_speed_mps_(floor.max_opponent_speed_mps),
-      scan_period_(from_seconds(1 / floor.laser->rate_hz)) {
-  forget();
-}
-
-void RobotLaser::forget() { sight_.emplace(laser_, rules_, settings_); }
+      scan_period_(from_seconds(1 / floor.laser->rate_hz)) {}
 
 void RobotLaser::on_scan(const LaserScan& scan, Neighbours& neighbours, Time now) {
   if (scan.captured_at > now + max_clock_difference_) {
     ++invalid_;
     return;
   }
-  if (sight_->captured_at() > now + max_clock_difference_) forget();
+  if (sight_.captured_at() > now + max_clock_difference_) sight_.forget();
   robots_.clear();
   for (const Version* version : neighbours.newest(scan.at_m, page_horizon_m(rules_)))
     robots_.push_back({position_at(version->trajectory, scan.captured_at), rules_.radius_m});
-  sight_->update(scan, robots_);
+  sight_.update(scan, robots_);
 }
 
 HiddenSpace RobotLaser::hidden_space() const {
-  const Visibility& visibility = sight_->visibility();
-  HiddenSpace hidden{visibility.frontiers(), visibility.closed_gaps(), sight_->captured_at(),
+  const Visibility& visibility = sight_.visibility();
+  HiddenSpace hidden{visibility.frontiers(), visibility.closed_gaps(), sight_.captured_at(),
                      max_person_speed_mps_};
   hidden.heading_error_rad = kMaxHeadingError_rad;
   hidden.creep_mps = kCreep_mps;
-  hidden.observed_from_m = sight_->beams().at_m();
+  hidden.observed_from_m = sight_.beams().at_m();
   return hidden;
 }
 

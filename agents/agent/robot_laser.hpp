@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,7 +25,7 @@ class RobotLaser {
   /// that it and earlier scans showed is forgotten.
   void on_scan(const LaserScan& scan, Neighbours& neighbours, Time now);
 
-  const LaserSight& sight() const { return *sight_; }
+  const LaserSight& sight() const { return sight_; }
   /// The other robots at the time of the last scan.
   std::span<const Circle> robots() const { return robots_; }
   /// The floor that the laser did not see in its last scan.
@@ -40,15 +39,11 @@ class RobotLaser {
   std::uint64_t invalid() const { return invalid_; }
 
  private:
-  void forget();
-
   const FloorRules& rules_;
-  LaserSpec laser_;
-  LaserSightSettings settings_;
+  LaserSight sight_;
   Duration max_clock_difference_;
   double max_person_speed_mps_;
   Duration scan_period_;
-  std::optional<LaserSight> sight_;  // always set
   std::vector<Circle> robots_;
   std::uint64_t invalid_ = 0;
 };

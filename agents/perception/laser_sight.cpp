@@ -50,6 +50,13 @@ bool LaserSight::update(const LaserScan& scan, std::span<const Circle> robots) {
   return true;
 }
 
+void LaserSight::forget() {
+  captured_at_ = {};
+  grid_ = LocalGrid();
+  tracks_ = LaserTracks();
+  unknown_.clear();
+}
+
 void LaserSight::find_unknown() {
   squares_.clear();
   unknown_.clear();

@@ -37,6 +37,9 @@ class LaserSight {
   /// Processes a scan. `robots` are the known robots at the time of the scan. Returns false and changes
   /// nothing if the scan is not newer than the last scan.
   bool update(const LaserScan& scan, std::span<const Circle> robots);
+  /// Forgets what scans have shown, except where people may step out. The next scan replaces that, and is
+  /// used whatever its time.
+  void forget();
 
   /// Time of the last scan; Time{} if there is none.
   Time captured_at() const { return captured_at_; }

@@ -97,4 +97,21 @@ TEST_CASE("unknown objects that stay stationary for a while are reported as squa
   CHECK(found == std::set<std::size_t>{0, 1});
 }
 
+TEST_CASE("after everything is forgotten, an earlier scan is used, and shows nothing of those before it") {
+  Watched watched;
+  LaserSight sight(watched.laser, watched.rules);
+  const Circle standing{{1.02, 0}, 0.1};
+  for (int i = 0; i < 10; ++i) REQUIRE(watched.scan(sight, {0, 0}, kBegin + i * kPeriod, {&standing, 1}));
+  REQUIRE_FALSE(sight.unknown().empty());
+  REQUIRE(sight.grid().state_at({0.92, 0}) == CellState::kOccupied);
+  sight.forget();
+  CHECK(sight.captured_at() == Time{});
+  CHECK(sight.unknown().empty());
+  const Circle far{{3, 0}, 0.1};
+  REQUIRE(watched.scan(sight, {0, 0}, kBegin, {&far, 1}));
+  CHECK(sight.grid().state_at({0.92, 0}) != CellState::kOccupied);
+  CHECK(sight.tracks().empty());
+  CHECK(sight.unknown().empty());
+}
+
 }  // namespace sidestep::laser_sight_test
