@@ -67,6 +67,7 @@ class Agent {
 
   // State of the negotiation; see Negotiation.
   Incarnation incarnation() const { return negotiation_.incarnation(); }
+  Incarnation robot_incarnation() const { return negotiation_.robot_incarnation(); }
   Epoch epoch() const { return negotiation_.epoch(); }
   bool is_superseded() const { return negotiation_.is_superseded(); }
   bool must_query_robot() const { return negotiation_.must_query_robot(); }

@@ -46,7 +46,7 @@ class AgentEventLogger {
 
   /// Call it once per cycle.
   void update(const AgentActivity& activity, const ClockSpeedLimit& limit, Time now);
-  /// Processes a report of a robot that obeys the agent.
+  /// Processes a report of the robot's current incarnation.
   void on_robot_report(const RobotReport& robot_report);
   /// Logs that the agent has adopted an epoch announced by `coordinator` or, if nullopt, by its robot.
   void on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinator);

@@ -89,7 +89,8 @@ void AgentNode::on_robot_report(const msg::Feedback& message) {
   // robots have acknowledged the epoch.
   if (!was_fenced && agent_.is_fenced() && agent_.epoch() != 0) publish_command(agent_.command(robot_now()));
   orders_.publish_status(agent_);
-  event_logger_.on_robot_report(*robot_report);
+  if (robot_report->robot_incarnation == agent_.robot_incarnation())
+    event_logger_.on_robot_report(*robot_report);
   if (agent_.epoch() != last_epoch) event_logger_.on_epoch(agent_.epoch(), std::nullopt);
   register_if_due();
   if (is_contradicted) negotiate_if_time();

@@ -27,6 +27,8 @@ class Fencing {
 
   /// The incarnation sent with commands. It changes only before the robot has acknowledged this agent.
   Incarnation incarnation() const { return incarnation_; }
+  /// The robot's current incarnation. 0: it has not reported yet.
+  Incarnation robot_incarnation() const { return robot_incarnation_; }
   /// The highest epoch that the robot has acknowledged.
   Epoch robot_epoch() const { return robot_epoch_; }
   /// The epoch that the robot obeyed when it acknowledged this agent. 0: it obeyed no epoch, or has not

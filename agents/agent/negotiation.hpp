@@ -43,6 +43,8 @@ class Negotiation {
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
 
+  /// See Fencing.
+  Incarnation robot_incarnation() const { return fencing_.robot_incarnation(); }
   /// The incarnation sent with commands, and the highest known epoch. The incarnation changes only before the
   /// robot has acknowledged this agent.
   Incarnation incarnation() const { return fencing_.incarnation(); }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/agent_event_logger.hpp"
 
+#include "agents/agent/agent_node.hpp"
+#include "common/config/scenario_loader.hpp"
+#include "common/messaging/robot_codec.hpp"
+#include "common/messaging/sim/bus.hpp"
 #include "tests/catch.hpp"
 #include "tests/log_events.hpp"
 
@@ -158,6 +162,35 @@ TEST_CASE("each own stop, restart and lifting of the robot is reported once") {
   ++robot_report.robot_incarnation;
   f.changes.on_robot_report(robot_report);
   CHECK(f.events.count("is off the floor") == 2);
+}
+
+TEST_CASE("a late report of the robot's earlier incarnation is not logged as another restart") {
+  const Scenario scenario = parse_scenario(
+      "field: {length_m: 6, width_m: 4}\nrobots:\n  - {id: 3, start_m: [0, 0]}\n", "one-robot.yaml");
+  SimNetwork network(1, kBegin, scenario.network);
+  SimBus agent_bus(network), robot_bus(network);
+  AgentNode node(agent_bus, scenario, 3, 1000, std::make_shared<PlanningScratch>(scenario));
+  LogEvents events(node);
+  auto reports = robot_bus.advertise(topics::kFeedback, 3);
+  const auto report = [&](Incarnation incarnation, std::uint64_t activated) {
+    RobotReport robot_report;
+    robot_report.robot = 3;
+    robot_report.robot_incarnation = incarnation;
+    robot_report.valid_at = network.now();
+    robot_report.executing = {3, 0, 0, 0, Trajectory::resting(kBegin, {0, 0})};
+    robot_report.activated = activated;
+    auto message = encode(robot_report);
+    reports.publish(message, network.now());
+    network.run_until(network.now() + 10ms);
+  };
+  report(5, 7);
+  report(6, 0);
+  CHECK(events.count("firmware has restarted") == 1);
+  // By then the earlier incarnation may speak again, as after a restart.
+  network.run_until(network.now() + SingleWriterGuard::kGoneAfter);
+  report(5, 7);
+  report(6, 0);
+  CHECK(events.count("firmware has restarted") == 1);
 }
 
 TEST_CASE("denials are counted by reason and reported at most once per second, at debug level") {
