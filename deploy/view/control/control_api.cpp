@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -60,10 +61,26 @@ std::vector<std::string> parts_of(std::string_view path) {
   return path.starts_with(kPrefix) ? split(path.substr(kPrefix.size())) : std::vector<std::string>{};
 }
 
-/// Whether a path has these parts. "*" in the pattern stands for any part.
-bool matches(std::string_view pattern, std::span<const std::string> parts) {
-  return std::ranges::equal(split(pattern), parts, [](const std::string& expected, const std::string& part) {
-    return expected == "*" || expected == part;
+/// A number in the paths of routes.
+struct PathNumber {
+  std::string_view placeholder;  ///< the name of what it numbers, in braces
+  std::uint64_t max;
+  std::string_view name() const { return placeholder.substr(1, placeholder.size() - 2); }
+};
+constexpr std::array kPathNumbers{PathNumber{"{robot}", kMaxRobots - 1},
+                                  PathNumber{"{zone}", std::numeric_limits<std::uint32_t>::max()},
+                                  PathNumber{"{order}", std::numeric_limits<OrderHandle>::max()}};
+
+/// The number for which a part of a route's path stands; nullptr if it stands for itself.
+const PathNumber* path_number(const std::string& part) {
+  const auto found = std::ranges::find(kPathNumbers, part, &PathNumber::placeholder);
+  return found == kPathNumbers.end() ? nullptr : &*found;
+}
+
+/// Whether a path may be that of a route, whatever stands in place of its numbers.
+bool matches(std::string_view route, std::span<const std::string> parts) {
+  return std::ranges::equal(split(route), parts, [](const std::string& expected, const std::string& part) {
+    return path_number(expected) || expected == part;
   });
 }
 
@@ -198,17 +215,9 @@ ControlApi::~ControlApi() { disturbances_.give_up(); }
 
 bool ControlApi::respond(const WebRequest& request, const WebReply& reply) {
   const std::vector<std::string> path = parts_of(request.path);
-  if (path.empty()) return false;
-  std::vector<const Route*> routes;
-  for (const Route& route : all_routes())
-    if (matches(route.path, path)) routes.push_back(&route);
+  const std::vector<const Route*> routes = routes_of(path);
   const bool is_get = request.method == "GET";
-  if (is_get && routes.empty()) {
-    if (path.size() != 2 || path[0] != "orders") return false;
-    const auto handle = parse_number<OrderHandle>(path[1]);
-    reply(handle ? order_state(*handle) : error_response(404, "expected the number of an order"));
-    return true;
-  }
+  if (path.empty() || (is_get && routes.empty())) return false;
   if (!is_get && !request.command_refusal.empty()) {
     reply(error_response(401, request.command_refusal));
     return true;
@@ -230,18 +239,32 @@ std::optional<WebResponse> ControlApi::command(const WebRequest& request, std::s
     std::ranges::transform(routes, std::back_inserter(methods), &Route::method);
     return error_response(405, fmt::format("use {}", fmt::join(methods, " or ")));
   }
-  const bool is_robot = path[0] == "robots";
-  std::optional<std::uint32_t> number = 0;
-  if (is_robot || path[0] == "zones") number = parse_number<std::uint32_t>(path[1]);
-  if (!number || (is_robot && *number >= kMaxRobots))
-    return error_response(404, fmt::format("there is no {} {}", is_robot ? "robot" : "zone", path[1]));
-  return (*route)->answer(*this, {*number, request.body, reply});
+  std::uint64_t number = 0;
+  const std::vector<std::string> parts = split((*route)->path);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PathNumber* kind = path_number(parts[i]);
+    if (!kind) continue;
+    const auto given = parse_number<std::uint64_t>(path[i]);
+    if (!given || *given > kind->max)
+      return error_response(404, fmt::format("there is no {} {}", kind->name(), path[i]));
+    number = *given;
+  }
+  return (*route)->answer(*this, {number, request.body, reply});
+}
+
+std::vector<const ControlApi::Route*> ControlApi::routes_of(std::span<const std::string> path) {
+  std::vector<const Route*> routes;
+  for (const Route& route : all_routes())
+    if (matches(route.path, path)) routes.push_back(&route);
+  return routes;
 }
 
 std::span<const ControlApi::Route> ControlApi::all_routes() {
   using Answer = std::optional<WebResponse>;
   using Api = ControlApi;
   static constexpr auto kRoutes = std::to_array<Route>({
+      {"GET", "orders/{order}",
+       [](Api& api, const Command& c) -> Answer { return api.order_state(c.number); }},
       {"POST", "hold",
        [](Api& api, const Command&) -> Answer { return accepted(api.client_.hold(kAllRobots)); }},
       {"POST", "resume",
@@ -249,20 +272,21 @@ std::span<const ControlApi::Route> ControlApi::all_routes() {
       {"POST", "bookmark", [](Api& api, const Command& c) -> Answer { return api.bookmark(c.body); }},
       {"POST", "recording/start", [](Api& api, const Command&) -> Answer { return api.record(true); }},
       {"POST", "recording/stop", [](Api& api, const Command&) -> Answer { return api.record(false); }},
-      {"POST", "zones/*",
-       [](Api& api, const Command& c) -> Answer { return api.set_zone(c.number, c.body); }},
-      {"DELETE", "zones/*", [](Api& api, const Command& c) -> Answer { return api.remove_zone(c.number); }},
-      {"POST", "robots/*/order",
-       [](Api& api, const Command& c) -> Answer { return api.go(c.number, c.body); }},
-      {"POST", "robots/*/cancel",
-       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.cancel(c.number)); }},
-      {"POST", "robots/*/hold",
-       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.hold(c.number)); }},
-      {"POST", "robots/*/resume",
-       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.resume(c.number)); }},
-      {"POST", "robots/*/fault",
+      {"POST", "zones/{zone}",
+       [](Api& api, const Command& c) -> Answer { return api.set_zone(c.id(), c.body); }},
+      {"DELETE", "zones/{zone}",
+       [](Api& api, const Command& c) -> Answer { return api.remove_zone(c.id()); }},
+      {"POST", "robots/{robot}/order",
+       [](Api& api, const Command& c) -> Answer { return api.go(c.id(), c.body); }},
+      {"POST", "robots/{robot}/cancel",
+       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.cancel(c.id())); }},
+      {"POST", "robots/{robot}/hold",
+       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.hold(c.id())); }},
+      {"POST", "robots/{robot}/resume",
+       [](Api& api, const Command& c) -> Answer { return accepted(api.client_.resume(c.id())); }},
+      {"POST", "robots/{robot}/fault",
        [](Api& api, const Command& c) -> Answer {
-         api.disturb(c.number, c.body, c.reply);
+         api.disturb(c.id(), c.body, c.reply);
          return std::nullopt;
        }},
   });

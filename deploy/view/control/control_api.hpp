@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/client/disturbance_client.hpp"
 #include "common/client/order_client.hpp"
@@ -57,18 +58,20 @@ class ControlApi {
 
  private:
   struct Command {
-    std::uint32_t number;  ///< of the robot or zone in the path; 0: the path names none
+    std::uint64_t number;  ///< in the path; 0: the path has none
     const std::string& body;
     const WebReply& reply;
+    /// The number of a robot or zone.
+    std::uint32_t id() const { return static_cast<std::uint32_t>(number); }
   };
   struct Route {
     std::string_view method;
-    std::string_view path;  ///< below "/api/"; "*" stands for a number
+    std::string_view path;  ///< below "/api/"; "{robot}", "{zone}" and "{order}" stand for numbers
     /// Returns nullopt if the reply is sent later.
     std::optional<WebResponse> (*answer)(ControlApi& api, const Command& command);
   };
-  /// All commands.
   static std::span<const Route> all_routes();
+  static std::vector<const Route*> routes_of(std::span<const std::string> path);
   /// `routes`: those of the path. Returns nullopt if the reply is sent later.
   std::optional<WebResponse> command(const WebRequest& request, std::span<const std::string> path,
                                      std::span<const Route* const> routes, const WebReply& reply);

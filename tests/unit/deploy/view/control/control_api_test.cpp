@@ -290,8 +290,10 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   CHECK(error("/api/robots/3/order", R"({"goal": [[0, 0]]})") == "goal: is unknown, expected goals");
   CHECK(error("/api/robots/x/order", R"({"goals": [[0, 0]]})") == "there is no robot x");
   CHECK(error("/api/robots/-1/order", R"({"goals": [[0, 0]]})") == "there is no robot -1");
+  CHECK(error("/api/robots/1024/order", R"({"goals": [[0, 0]]})") == "there is no robot 1024");
   CHECK(error("/api/robots/3/dance", "{}") == "there is no /api/robots/3/dance");
   CHECK(error("/api/zones/x", "{}") == "there is no zone x");
+  CHECK(error("/api/zones/4294967296", "{}") == "there is no zone 4294967296");
   CHECK(error("/api/robots/3/fault", R"({"kind": "melt"})").starts_with("kind: expected one of: push, slip"));
   CHECK(error("/api/robots/3/fault", R"({"kind": "push"})") == "vx_mps: is missing");
   CHECK(error("/api/robots/3/fault", R"({"kind": "push", "vx_mps": 10.1, "vy_mps": 0})") ==
@@ -306,6 +308,7 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   CHECK(run.request("PUT", "/api/hold").status == 405);
   CHECK(run.request("GET", "/api/orders/77").status == 404);
   CHECK(run.request("GET", "/api/orders/x").status == 404);
+  CHECK(error("/api/orders/77", "") == "use GET");
   for (const char* path :
        {"/api/robots/3/order", "/api/robots/3/fault", "/api/hold", "/api/recording/start"}) {
     const WebResponse answer = run.request("GET", path);
