@@ -126,10 +126,12 @@ WebResponse MonitorServer::respond(const WebRequest& request) {
     return {200, "application/json", parts_.network->json()};
   if (auto response = camera_image(request)) return *response;
   if (auto response = fields(request)) return *response;
-  if (request.method != "GET" && !request.command_refusal.empty())
+  const bool has_control = !server_.access().token.empty(), is_get = request.method == "GET";
+  const bool is_control = !is_get || ControlApi::has_path(request.path);
+  // With control, whoever sees the page may get the state of an order.
+  if (is_control && !(is_get && has_control) && !request.command_refusal.empty())
     return api_error(401, request.command_refusal);
-  const bool needs_run = request.method != "GET" || request.path.starts_with("/api/orders/");
-  if (needs_run && is_over_) return api_error(409, "the run is over");
+  if (is_control && is_over_) return api_error(409, "the run is over");
   return api_error(404, "there is no " + request.path);
 }
 

@@ -252,6 +252,8 @@ std::optional<WebResponse> ControlApi::command(const WebRequest& request, std::s
   return (*route)->answer(*this, {number, request.body, reply});
 }
 
+bool ControlApi::has_path(const std::string& path) { return !routes_of(parts_of(path)).empty(); }
+
 std::vector<const ControlApi::Route*> ControlApi::routes_of(std::span<const std::string> path) {
   std::vector<const Route*> routes;
   for (const Route& route : all_routes())

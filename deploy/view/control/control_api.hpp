@@ -55,6 +55,8 @@ class ControlApi {
   /// Replies at once or later. Returns false, and does not reply, if there is no such path. Requests that may
   /// not give commands are refused with status 401.
   [[nodiscard]] bool respond(const WebRequest& request, const WebReply& reply);
+  /// Whether some method has requests with this path.
+  [[nodiscard]] static bool has_path(const std::string& path);
 
  private:
   struct Command {

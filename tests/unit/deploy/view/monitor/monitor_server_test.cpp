@@ -19,16 +19,17 @@ namespace sidestep::monitor_server_test {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-/// A simulated run with a server whose viewers may command with the token "secret".
+/// A simulated run with a server whose viewers may command with this token; empty: none may.
 struct ServedRun {
   Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml");
   SimSystem system{scenario, 1};
   SimBus bus{system.network()}, client_bus{system.network()};
   Monitor monitor{(bus.become_observer(), bus), {&scenario, {}, false, true, {}}};
   ControlApi control{client_bus, {}};
-  MonitorServer server{AccessSettings{"127.0.0.1", 0, {}, "secret"}, monitor, {&control}};
+  MonitorServer server;
 
-  ServedRun() {
+  explicit ServedRun(const std::string& token = "secret")
+      : server(AccessSettings{"127.0.0.1", 0, {}, token}, monitor, {token.empty() ? nullptr : &control}) {
     system.run_for(1s);
     monitor.take_snapshot();
   }
@@ -57,6 +58,19 @@ TEST_CASE("the monitor's server answers errors of its API in JSON") {
   CHECK_THAT(run.error(run.request("POST", "/api/hold", "wrong")), StartsWith("the header 'Authorization"));
 }
 
+TEST_CASE("without control, every request that needs it is told so, whatever its method") {
+  ServedRun run("");
+  for (const auto& [method, path] :
+       {std::pair("POST", "/api/hold"), std::pair("GET", "/api/hold"), std::pair("GET", "/api/zones/1"),
+        std::pair("GET", "/api/robots/3/order"), std::pair("GET", "/api/orders/1")}) {
+    CAPTURE(method, path);
+    const HttpAnswer answer = run.request(method, path, "");
+    CHECK(answer.status == 401);
+    CHECK(run.error(answer) == "this monitor refuses commands; start it with --control");
+  }
+  CHECK(run.request("GET", "/api/robots/3/dance", "").status == 404);
+}
+
 TEST_CASE("whatever the monitor's page names is served, and it names an icon") {
   ServedRun run;
   const std::string page = run.request("GET", "/", "").body;
@@ -80,6 +94,7 @@ TEST_CASE("when the run is over, its page still shows it, but commands are refus
   CHECK(run.error(refused) == "the run is over");
   CHECK(run.request("POST", "/api/hold", "wrong").status == 401);
   CHECK(run.error(run.request("GET", "/api/orders/1", "")) == "the run is over");
+  CHECK(run.error(run.request("GET", "/api/hold", "")) == "the run is over");
   CHECK(run.request("GET", "/", "").status == 200);
   const Json scene = parse_json(run.request("GET", "/api/scene", "").body);
   CHECK(scene.at("is_recording") == true);
