@@ -27,6 +27,19 @@ Scenario two_robots() {
   return scenario;
 }
 
+/// A world state in which vision observes these robots at the origin.
+msg::WorldState world_of(std::initializer_list<RobotId> robots, Time at) {
+  msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
+  world.valid_at_ns(to_ns(at));
+  for (const RobotId id : robots) {
+    msg::TrackedRobot& robot = world.robots().emplace_back();
+    robot.robot(id);
+    robot.observed_at_ns(to_ns(at));
+  }
+  return world;
+}
+
 // A coordinator and a second process that receives what it publishes.
 struct Floor {
   explicit Floor(bool is_standby = false) : node(bus, scenario, {0, 5}, is_standby) {
@@ -291,10 +304,7 @@ TEST_CASE("a coordinator reports why it stands by") {
 TEST_CASE("a displaced robot's position is published after every world state") {
   Floor floor;
   floor.register_both();
-  msg::WorldState world;
-  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
-  auto& robot = world.robots().emplace_back();
-  robot.robot(1);
+  msg::WorldState world = world_of({1}, floor.network.now());
   const auto see = [&](double x) {
     world.valid_at_ns(to_ns(floor.network.now()));
     world.robots()[0].observed_at_ns(to_ns(floor.network.now()));
@@ -320,11 +330,7 @@ TEST_CASE("a displaced robot's position is published after every world state") {
 TEST_CASE("a displaced robot whose position jumps is named with a speed that agents accept") {
   Floor floor;
   floor.register_both();
-  msg::WorldState world;
-  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
-  auto& robot = world.robots().emplace_back();
-  robot.robot(1);
-  robot.observed_at_ns(to_ns(floor.network.now()));
+  msg::WorldState world = world_of({1}, floor.network.now());
   floor.send(topics::kWorld, world);
   world.robots()[0].observed_at_ns(world.robots()[0].observed_at_ns() + 1);
   world.robots()[0].observed_x_m(1);
@@ -338,10 +344,8 @@ TEST_CASE("a displaced robot whose position jumps is named with a speed that age
 TEST_CASE("a world state from the future is counted, displaces no robot and does not count as watching") {
   Floor floor;
   floor.register_both();
-  msg::WorldState world;
-  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
-  auto& robot = world.robots().emplace_back();
-  robot.robot(1);
+  msg::WorldState world = world_of({1}, floor.network.now());
+  msg::TrackedRobot& robot = world.robots()[0];
   robot.observed_x_m(0.3);
   // The message takes 0.2 to 0.6 ms to arrive. Two clocks may differ by 1 ms, and vision's may be ahead by
   // 0.1 s.
@@ -363,15 +367,8 @@ TEST_CASE("a world state from the future is counted, displaces no robot and does
 TEST_CASE("a malformed observation is counted, and its world state does not count as watching") {
   Floor floor;
   floor.register_both();
-  msg::WorldState world;
-  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
-  world.valid_at_ns(to_ns(floor.network.now()));
-  for (const RobotId id : {1, 2}) {
-    auto& robot = world.robots().emplace_back();
-    robot.robot(id);
-    robot.observed_at_ns(to_ns(floor.network.now()));
-    robot.observed_x_m(id == 1 ? 0 : kNan);
-  }
+  msg::WorldState world = world_of({1, 2}, floor.network.now());
+  world.robots()[1].observed_x_m(kNan);
   floor.send(topics::kWorld, world);
   CHECK(floor.state.watched_until_ns() == 0);
   CHECK(drops_of(floor.node).total(DropReason::kMalformedObservation) == 1);
@@ -393,12 +390,7 @@ TEST_CASE(
     "a coordinator that has yielded publishes its state at a standby's rate, even if robots were silent") {
   Floor floor;
   floor.register_both();
-  msg::WorldState world;
-  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
-  const auto see = [&] {
-    world.valid_at_ns(to_ns(floor.network.now()));
-    floor.send(topics::kWorld, world);
-  };
+  const auto see = [&] { floor.send(topics::kWorld, world_of({}, floor.network.now())); };
   // Robot 1 falls silent while it should move.
   floor.send(topics::kFeedback, make_report(floor.a, 1000));
   const double now_s = to_seconds(floor.network.now().time_since_epoch());
