@@ -21,13 +21,14 @@ Conformance::Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Inca
       probe_(bus, scenario_, robot, incarnation),
       stream_(probe_, scenario_),
       context_{scenario_, settings_, probe_, stream_, report_},
-      steps_(conformance_steps(scenario_, settings_)) {
+      steps_(conformance_steps(scenario_, settings_)),
+      step_(steps_.front()()) {
   bus.at(bus.now(), [this] { cycle(); });
 }
 
 void Conformance::cycle() {
   if (is_finished()) return;
-  if (steps_[step_]->update(context_)) end_step();
+  if (step_->update(context_)) end_step();
   probe_.send_command();
   bus_.at(bus_.now() + scenario_.cycle, [this] { cycle(); });
 }
@@ -44,12 +45,13 @@ void Conformance::end_step() {
     ++attempt_;
     report_ = before_step_;
     context_.is_late = was_late_;
-    steps_[step_] = std::move(conformance_steps(scenario_, settings_)[step_]);
+    step_ = steps_[index_]();
     return;
   }
   const bool has_failed = !rows.empty() && rows.back().conformity != Conformity::kPassed;
-  const bool is_last = steps_[step_]->is_required() && has_failed;
-  step_ = is_last ? steps_.size() : step_ + 1;
+  const bool is_last = step_->is_required() && has_failed;
+  index_ = is_last ? steps_.size() : index_ + 1;
+  if (!is_finished()) step_ = steps_[index_]();
   attempt_ = 1;
   before_step_ = report_;
   was_late_ = context_.is_late;
@@ -57,7 +59,7 @@ void Conformance::end_step() {
 
 std::string Conformance::activity() const {
   if (is_finished()) return "";
-  return steps_[step_]->name() + (attempt_ > 1 ? ", again" : "");
+  return step_->name() + (attempt_ > 1 ? ", again" : "");
 }
 
 }  // namespace sidestep

@@ -22,7 +22,7 @@ class Conformance {
   Conformance(const Conformance&) = delete;
   Conformance& operator=(const Conformance&) = delete;
 
-  bool is_finished() const { return step_ == steps_.size(); }
+  bool is_finished() const { return index_ == steps_.size(); }
   const ConformanceReport& report() const { return report_; }
   /// The current step of the test, in words.
   std::string activity() const;
@@ -39,8 +39,9 @@ class Conformance {
   VersionStream stream_;
   ConformanceReport report_;
   ConformanceContext context_;
-  std::vector<std::unique_ptr<ConformanceStep>> steps_;
-  std::size_t step_ = 0;
+  std::vector<ConformanceStepMaker> steps_;
+  std::size_t index_ = 0;  ///< of the current step
+  std::unique_ptr<ConformanceStep> step_;
   int attempt_ = 1;
   ConformanceReport before_step_;  ///< without the rows and figures of the current step
   bool was_late_ = false;          ///< ConformanceContext::is_late before the current step

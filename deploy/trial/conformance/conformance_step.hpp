@@ -59,9 +59,10 @@ class ConformanceStep {
   virtual bool is_required() const { return false; }
 };
 
-/// Creates all steps, in order.
-std::vector<std::unique_ptr<ConformanceStep>> conformance_steps(const Scenario& scenario,
-                                                                const ConformanceSettings& settings);
+using ConformanceStepMaker = std::function<std::unique_ptr<ConformanceStep>()>;
+/// All steps, in order. The scenario must outlive the result.
+std::vector<ConformanceStepMaker> conformance_steps(const Scenario& scenario,
+                                                    const ConformanceSettings& settings);
 
 // Creates the individual steps; only for conformance_steps().
 std::unique_ptr<ConformanceStep> make_reports_step();

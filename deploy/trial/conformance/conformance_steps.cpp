@@ -11,25 +11,29 @@ Conformity unless_busy(bool is_passed, const RobotProbe& probe, std::string& fig
   return Conformity::kNotJudged;
 }
 
-std::vector<std::unique_ptr<ConformanceStep>> conformance_steps(const Scenario& scenario,
-                                                                const ConformanceSettings& settings) {
-  std::vector<std::unique_ptr<ConformanceStep>> steps;
-  steps.push_back(make_reports_step());
-  steps.push_back(make_clock_step());
-  steps.push_back(make_new_agent_step());
-  steps.push_back(make_fence_step());
-  steps.push_back(make_switch_step());
-  steps.push_back(make_versions_step());
-  steps.push_back(make_rest_step());
-  steps.push_back(make_first_drive_step());
-  steps.push_back(make_latency_step());
-  steps.push_back(make_tracking_step(scenario));
-  steps.push_back(make_turning_step(scenario));
-  steps.push_back(make_lost_commands_step(scenario));
-  steps.push_back(make_braking_step(scenario));
-  steps.push_back(make_takeover_step());
-  steps.push_back(make_own_stop_step());
-  if (settings.stop_driver) steps.push_back(make_silence_step(scenario));
+std::vector<ConformanceStepMaker> conformance_steps(const Scenario& scenario,
+                                                    const ConformanceSettings& settings) {
+  const auto on_floor = [&scenario](std::unique_ptr<ConformanceStep> (*make)(const Scenario&)) {
+    return [&scenario, make] { return make(scenario); };
+  };
+  std::vector<ConformanceStepMaker> steps{
+      make_reports_step,
+      make_clock_step,
+      make_new_agent_step,
+      make_fence_step,
+      make_switch_step,
+      make_versions_step,
+      make_rest_step,
+      make_first_drive_step,
+      make_latency_step,
+      on_floor(make_tracking_step),
+      on_floor(make_turning_step),
+      on_floor(make_lost_commands_step),
+      on_floor(make_braking_step),
+      make_takeover_step,
+      make_own_stop_step,
+  };
+  if (settings.stop_driver) steps.emplace_back(on_floor(make_silence_step));
   return steps;
 }
 
