@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "agents/adapters/league/league_driver.hpp"
@@ -31,11 +33,57 @@ struct Options {
   std::string blue = "127.0.0.1:10301", yellow = "127.0.0.1:10302";
 };
 
+/// What a driver may be made of.
+struct DriverParts {
+  DdsBus& bus;
+  Bus* bases;  ///< null unless the driver is "velocity"
+  const Scenario& scenario;
+  const std::vector<RobotId>& robots;
+  const Options& options;
+};
+
+std::unique_ptr<Driver> make_league_driver(const DriverParts& parts) {
+  const LeaguePorts ports{league::parse_unicast_endpoint(parts.options.blue),
+                          league::parse_unicast_endpoint(parts.options.yellow)};
+  auto driver = std::make_unique<LeagueDriver>(parts.scenario, parts.robots, ports);
+  parts.bus.watch(driver->descriptor(), [driver = driver.get()] { driver->receive(); });
+  log_events_of(*driver);
+  return driver;
+}
+
+std::unique_ptr<Driver> make_velocity_driver(const DriverParts& parts) {
+  return std::make_unique<VelocityDriver>(*parts.bases, parts.robots, parts.options.bases.topic_prefix);
+}
+
+std::unique_ptr<Driver> make_skeleton_driver(const DriverParts& parts) {
+  return std::make_unique<SkeletonDriver>(parts.robots, [&bus = parts.bus] { return bus.now(); });
+}
+
+struct NamedDriver {
+  std::string_view name;
+  std::unique_ptr<Driver> (*make)(const DriverParts& parts);
+};
+/// All drivers.
+constexpr std::array kDrivers{NamedDriver{"league", make_league_driver},
+                              NamedDriver{"velocity", make_velocity_driver},
+                              NamedDriver{"skeleton", make_skeleton_driver}};
+
+std::vector<std::string> driver_names() {
+  std::vector<std::string> names;
+  for (const NamedDriver& driver : kDrivers) names.emplace_back(driver.name);
+  return names;
+}
+
+/// Precondition: the option --driver is one of driver_names().
+std::unique_ptr<Driver> make_driver(const DriverParts& parts) {
+  return std::ranges::find(kDrivers, parts.options.driver, &NamedDriver::name)->make(parts);
+}
+
 void add_options(const CliCommand& app, Options& options) {
   app.add_option(
          "--driver", options.driver,
          "driver that moves the robots: league, velocity; skeleton: ideal bases, the template for drivers")
-      .check(one_of({"league", "velocity", "skeleton"}))
+      .check(one_of(driver_names()))
       .required();
   app.add_option("--robots", options.robots, "numbers and ranges of the scenario's robots, such as 0-10,16")
       .show_default();
@@ -56,23 +104,6 @@ void add_options(const CliCommand& app, Options& options) {
       .show_default();
 }
 
-/// `bases` is null unless the driver is `velocity`. Throws std::logic_error if the driver has a name that
-/// add_options() accepts and this function does not know.
-std::unique_ptr<Driver> make_driver(DdsBus& bus, Bus* bases, const Scenario& scenario,
-                                    const std::vector<RobotId>& robots, const Options& options) {
-  if (bases) return std::make_unique<VelocityDriver>(*bases, robots, options.bases.topic_prefix);
-  if (options.driver == "skeleton")
-    return std::make_unique<SkeletonDriver>(robots, [&bus] { return bus.now(); });
-  if (options.driver != "league")
-    throw std::logic_error("--driver: make_driver() of robot_main.cpp does not know " + options.driver);
-  const LeaguePorts ports{league::parse_unicast_endpoint(options.blue),
-                          league::parse_unicast_endpoint(options.yellow)};
-  auto driver = std::make_unique<LeagueDriver>(scenario, robots, ports);
-  bus.watch(driver->descriptor(), [driver = driver.get()] { driver->receive(); });
-  log_events_of(*driver);
-  return driver;
-}
-
 DriveSettings settings_of(const Scenario& scenario, const Options& options) {
   DriveSettings settings = drive_settings(scenario, from_seconds(options.latency_ms * 1e-3));
   settings.turn_radps = options.turn_radps;
@@ -83,7 +114,7 @@ struct Nodes {
   Nodes(DdsBus& bus, const Scenario& scenario, Incarnation incarnation, const Options& options)
       : robots(select_robots(scenario, options.robots)),
         bases(options.driver == "velocity" ? bases_bus(bus, options.bases) : nullptr),
-        driver(make_driver(bus, bases.get(), scenario, robots, options)),
+        driver(make_driver({bus, bases.get(), scenario, robots, options})),
         node(bus, scenario, robots, incarnation, settings_of(scenario, options), *driver,
              options.memory_folder) {
     if (const auto* skeleton = dynamic_cast<const SkeletonDriver*>(driver.get()))
