@@ -10,7 +10,7 @@
 
 #include "common/file/temporary_folder.hpp"
 #include "common/file/write_file.hpp"
-#include "tests/capture_stderr.hpp"
+#include "tests/capture_output.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::picture_test {

@@ -12,7 +12,7 @@
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/random/rng.hpp"
-#include "tests/capture_stderr.hpp"
+#include "tests/capture_output.hpp"
 #include "tests/test_domain.hpp"
 
 namespace sidestep {

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
-#include <unistd.h>
 
 #include "common/file/temporary_folder.hpp"
 #include "common/file/write_file.hpp"
@@ -36,39 +35,6 @@ DiscoveredEndpoint endpoint(const std::string& participant, bool is_writer, bool
   result.is_reliable = is_reliable;
   return result;
 }
-
-/// Captures the stdout of this process during its lifetime.
-class CaptureStdout {
- public:
-  CaptureStdout() : file_(std::tmpfile()) {
-    std::fflush(stdout);
-    saved_ = dup(1);
-    dup2(fileno(file_), 1);
-  }
-  ~CaptureStdout() {
-    finish();
-    std::fclose(file_);
-  }
-  CaptureStdout(const CaptureStdout&) = delete;
-  CaptureStdout& operator=(const CaptureStdout&) = delete;
-
-  std::string finish() {
-    std::fflush(stdout);
-    if (saved_ >= 0) {
-      dup2(saved_, 1);
-      close(saved_);
-      saved_ = -1;
-    }
-    std::string result(1 << 16, '\0');
-    const ssize_t size = pread(fileno(file_), result.data(), result.size(), 0);
-    result.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
-    return result;
-  }
-
- private:
-  std::FILE* file_;
-  int saved_ = -1;
-};
 
 struct Outcome {
   int exit_code;

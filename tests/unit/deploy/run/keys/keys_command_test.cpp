@@ -8,6 +8,7 @@
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/command_line.hpp"
 #include "tests/as_nobody.hpp"
+#include "tests/capture_output.hpp"
 #include "tests/catch.hpp"
 #include "tests/needs_root.hpp"
 
@@ -49,6 +50,33 @@ TEST_CASE("keys are made, replaced, revoked and shown") {
   CHECK_THAT(run({"keys", "revoke", "agent", "3-4", "vision", "--keys", keys}),
              ContainsSubstring("no key was issued for agent 4"));
   CHECK_FALSE(fs::exists(keys + "/enclaves/vision"));
+}
+
+TEST_CASE("revoke says how many keys it has revoked, and what other hosts need") {
+  const TemporaryFolder temporary;
+  const std::string keys = temporary.file("keys");
+  const std::string what_next = "processes that use " + keys +
+                                "/enclaves refuse them within a second; copy " + keys +
+                                "/public/crl.pem into the folders of keys on other hosts\n";
+  REQUIRE(run({"keys", "init", keys}).empty());
+  REQUIRE(run({"keys", "issue", "agent", "3", "vision", "--keys", keys}).empty());
+  REQUIRE(run({"keys", "issue", "agent", "3", "--again", "--keys", keys}).empty());
+  std::string text, error;
+  const auto revoke = [&](std::vector<std::string> identities) {
+    identities.insert(identities.begin(), {"keys", "revoke", "--keys", keys});
+    CaptureStdout output;
+    error = run(identities);
+    text = output.finish();
+  };
+  revoke({"agent", "3"});
+  CHECK(error.empty());
+  CHECK(text == "revoked 2 keys of agent 3\n" + what_next);
+  revoke({"agent", "3-4", "vision"});
+  CHECK(error == "no key was issued for agent 4; `sidestep keys show` lists all");
+  CHECK(text == "agent 3: already revoked\nrevoked 1 key of vision\n" + what_next);
+  revoke({"operator"});
+  CHECK(error == "no key was issued for operator; `sidestep keys show` lists all");
+  CHECK(text.empty());
 }
 
 TEST_CASE("all keys of a scenario are made with one command, and existing keys stay") {
