@@ -22,6 +22,17 @@ void evict_excluded(Stage& stage) {
   stage.report(0);
 }
 
+/// The coordinator of epoch 5, which hears no reports, lists a version of robot 0.
+void list_late(Stage& stage, const msg::Version& version) {
+  stage.epoch = 5;
+  stage.show_page({version, stage.rest(1)});
+}
+
+void check_no_violation(const Stage& stage) {
+  INFO(stage.lines());
+  CHECK(stage.violations.empty());
+}
+
 /// Robot 0 is granted version 1 in epoch 5. In epoch 6 it replaces this version by its own stop.
 struct StoppedStage : Stage {
   StoppedStage() {
@@ -42,10 +53,8 @@ struct StoppedStage : Stage {
 TEST_CASE("an old coordinator may list an evicted version, whether or not its agent registers it again") {
   StoppedStage stage;
   if (GENERATE(true, false)) stage.register_versions(0, {stage.granted});
-  stage.epoch = 5;
-  stage.show_page({stage.granted, stage.rest(1)});
-  INFO(stage.lines());
-  CHECK(stage.violations.empty());
+  list_late(stage, stage.granted);
+  check_no_violation(stage);
 }
 
 TEST_CASE("an old coordinator may list an evicted own stop that an agent registers again") {
@@ -54,10 +63,8 @@ TEST_CASE("an old coordinator may list an evicted own stop that an agent registe
   stage.drive(stage.next(stage.own_stop, kOwnStop + 1));
   evict_excluded(stage);
   stage.register_versions(0, {stage.own_stop});
-  stage.epoch = 5;
-  stage.show_page({stage.own_stop, stage.rest(1)});
-  INFO(stage.lines());
-  CHECK(stage.violations.empty());
+  list_late(stage, stage.own_stop);
+  check_no_violation(stage);
 }
 
 TEST_CASE("an old coordinator may list an evicted initial rest that an agent registers again") {
@@ -67,36 +74,24 @@ TEST_CASE("an old coordinator may list an evicted initial rest that an agent reg
   stage.drive(stage.next(stage.rest(0), 1));
   evict_excluded(stage);
   stage.register_versions(0, {stage.rest(0)});
-  stage.epoch = 5;
-  stage.show_page({stage.rest(0), stage.rest(1)});
-  INFO(stage.lines());
-  CHECK(stage.violations.empty());
+  list_late(stage, stage.rest(0));
+  check_no_violation(stage);
 }
 
-TEST_CASE("an old coordinator may repeat a grant of an evicted version that an agent registers again") {
+TEST_CASE("an old coordinator may repeat a grant of, or grant on, an evicted version registered again") {
   StoppedStage stage;
   stage.register_versions(0, {stage.granted});
   stage.epoch = 5;
-  stage.decide(0, 1, 1);
-  INFO(stage.lines());
-  CHECK(stage.violations.empty());
-}
-
-TEST_CASE("an old coordinator may grant on an evicted base that an agent registers again") {
-  StoppedStage stage;
-  stage.register_versions(0, {stage.granted});
-  stage.epoch = 5;
-  stage.grant(stage.next(stage.granted, 2));
-  INFO(stage.lines());
-  CHECK(stage.violations.empty());
+  SECTION("a repeated grant") { stage.decide(0, 1, 1); }
+  SECTION("a grant on this base") { stage.grant(stage.next(stage.granted, 2)); }
+  check_no_violation(stage);
 }
 
 TEST_CASE("a version that is numbered above all evicted ones is not taken for an evicted one") {
   StoppedStage stage;
   const msg::Version unknown = stage.next(stage.own_stop, kOwnStop + 1);
   if (GENERATE(true, false)) stage.register_versions(0, {unknown});
-  stage.epoch = 5;
-  stage.show_page({unknown, stage.rest(1)});
+  list_late(stage, unknown);
   check_only(stage, AuditRule::kLedgerPage, 1);
 }
 
@@ -110,8 +105,7 @@ TEST_CASE("a version that was never evicted is not taken for an evicted one if a
   stage.advance(60ms);
   stage.report(0);
   evict_excluded(stage);
-  stage.epoch = 5;
-  stage.show_page({executed, stage.rest(1)});
+  list_late(stage, executed);
   check_only(stage, AuditRule::kLedgerPage, 1);
 }
 
