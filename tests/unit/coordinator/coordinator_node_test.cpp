@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
