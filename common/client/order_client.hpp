@@ -77,6 +77,8 @@ class OrderClient {
   /// nullopt if no complete memory was received yet. Leaves out coordinators that no longer repeat their
   /// memories while another one does: they have died, and orders in their memories may have ended since.
   std::optional<OrderBook> remembered_orders() const;
+  /// Whether this coordinator has told its complete memory.
+  bool has_memory_of(std::uint32_t coordinator) const { return memories_.contains(coordinator); }
   /// Whether this client has set this zone, coordinators remember that it did, or none has told its memory
   /// yet.
   bool may_have_zone(std::uint32_t number) const;

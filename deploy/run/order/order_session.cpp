@@ -50,7 +50,8 @@ OrderSession::OrderSession(const OrderOptions& options)
       client_(bus_, client_of(options), options.client) {
   client_.on_change([this](const SentOrder& sent) { on_change(sent); });
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) {
-    is_coordinator_heard_ |= state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING;
+    if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING)
+      coordinator_ = state.header().sender();
   });
 }
 
@@ -138,7 +139,9 @@ int OrderSession::finish(const std::vector<OrderHandle>& handles) {
 }
 
 std::optional<std::vector<Order>> OrderSession::zones_without(std::uint32_t number) {
-  for (const Time deadline = bus_.now() + kMemoryTimeout; bus_.now() < deadline;) {
+  // The memory of a standby may lack a zone that was accepted a moment ago, that of the other may not.
+  const auto is_told = [this] { return coordinator_ && client_.has_memory_of(*coordinator_); };
+  for (const Time deadline = bus_.now() + kMemoryTimeout; bus_.now() < deadline && !is_told();) {
     bus_.run_until(bus_.now() + kPollPeriod);
     if (client_.remembered_orders() && client_.may_have_zone(number)) return std::nullopt;
   }
@@ -171,7 +174,7 @@ std::string OrderSession::open_text() const {
 }
 
 std::string OrderSession::unconfirmed_text() const {
-  return is_coordinator_heard_
+  return coordinator_
              ? "the order may take effect, but is not confirmed: the coordinator waits for an agent that "
                "remembers the order (for a hold: the agent of a held robot). Check that such an agent is "
                "running"

@@ -52,7 +52,8 @@ class OrderSession {
   int finish_resume(OrderHandle handle);
 
   /// Listens until a coordinator's memory lists this zone of the client; then, or if no coordinator tells its
-  /// memory, returns nullopt. Otherwise returns the zones in force.
+  /// memory, returns nullopt. Returns the zones in force as soon as the memory of the coordinator that grants
+  /// lacks the zone.
   std::optional<std::vector<Order>> zones_without(std::uint32_t number);
 
  private:
@@ -84,8 +85,8 @@ class OrderSession {
   std::optional<RobotWatch> watch_;  // only for finish() that waits for robots
   std::vector<OrderHandle> handles_;
   std::map<OrderHandle, Shown> shown_;
-  bool names_holders_ = false;  // finish() also waits until the holds in force are known
-  bool is_coordinator_heard_ = false;
+  bool names_holders_ = false;                // finish() also waits until the holds in force are known
+  std::optional<std::uint32_t> coordinator_;  // the one that grants
 };
 
 }  // namespace sidestep

@@ -111,6 +111,14 @@ TEST_CASE("a client knows the zones that any coordinator remembers once it has h
   CHECK(zones().empty());
 }
 
+TEST_CASE("a client knows which coordinators have told their memories") {
+  System system;
+  CHECK_FALSE(system.client.has_memory_of(kCoordinator));
+  system.tell_memory();
+  CHECK(system.client.has_memory_of(kCoordinator));
+  CHECK_FALSE(system.client.has_memory_of(kCoordinator + 1));
+}
+
 TEST_CASE("a client may have a zone that it has set, that coordinators remember, or as long as none tells") {
   System system;
   CHECK(system.client.may_have_zone(7));
