@@ -79,6 +79,12 @@ std::string try_write_file(const std::string& path, const std::string& text) try
   return error.what();
 }
 
+void require_written(std::initializer_list<std::string> problems) {
+  std::string all;
+  for (const std::string& problem : problems) all += (all.empty() || problem.empty() ? "" : "; ") + problem;
+  if (!all.empty()) throw std::runtime_error(all);
+}
+
 void require_replaceable(const std::string& path) {
   create_folder_of(path);
   require_write_permission(path);

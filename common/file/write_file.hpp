@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 namespace sidestep {
@@ -13,6 +14,9 @@ void write_file(const std::string& path, const std::string& text);
 
 /// Like write_file(), but returns what it would throw as text, for work that goes on; empty on success.
 [[nodiscard]] std::string try_write_file(const std::string& path, const std::string& text);
+
+/// Throws std::runtime_error with all problems that try_write_file() returned, unless all are empty.
+void require_written(std::initializer_list<std::string> problems);
 
 /// Checks, before work whose result goes to a file, that write_file() could write the file now, and creates
 /// its folder. Leaves the file as it is. Throws what write_file() would throw.

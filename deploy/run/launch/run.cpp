@@ -124,13 +124,12 @@ int run(const RunOptions& given) {
   options.floor.memory_folder = robot_memory.path();
   ProcessGroup group(log_path);
   const auto finish = [&](const Report& report) {
-    std::string problem = try_write_report(report, report_path);
+    const std::string problem = try_write_report(report, report_path);
     print_to(stdout, "{}log: {}\n", problem.empty() ? "report: " + report_path + "\n" : "", log_path);
-    if (!options.picture_file.empty()) {
-      const std::string drawing = try_write_file(options.picture_file, run_picture_from(to_json(report)));
-      problem += (problem.empty() || drawing.empty() ? "" : "; ") + drawing;
-    }
-    if (!problem.empty()) throw std::runtime_error(problem);
+    std::string drawing;
+    if (!options.picture_file.empty())
+      drawing = try_write_file(options.picture_file, run_picture_from(to_json(report)));
+    require_written({problem, drawing});
     return exit_code(report.verdict());
   };
   const auto began = std::chrono::steady_clock::now();

@@ -173,14 +173,12 @@ int finish(const SimulateOptions& options, Report& report, SimRecorder& recorder
   if (!had_failed && !report.recording_failure.empty())
     print_to(stdout, "failed: {}\n", report.failure_reason());
   const std::string path = report_path(options, report.scenario);
-  std::string problem = try_write_report(report, path);
+  const std::string problem = try_write_report(report, path);
   if (problem.empty()) print_to(stdout, "report: {}\n", path);
-  if (!options.picture_file.empty()) {
-    const std::string drawing =
-        try_write_file(options.picture_file, laser ? laser->svg() : run_picture_from(to_json(report)));
-    problem += (problem.empty() || drawing.empty() ? "" : "; ") + drawing;
-  }
-  if (!problem.empty()) throw std::runtime_error(problem);
+  std::string drawing;
+  if (!options.picture_file.empty())
+    drawing = try_write_file(options.picture_file, laser ? laser->svg() : run_picture_from(to_json(report)));
+  require_written({problem, drawing});
   return exit_code(report.verdict());
 }
 

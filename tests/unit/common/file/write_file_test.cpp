@@ -69,6 +69,12 @@ TEST_CASE("a file that cannot be written is reported with the reason, and no par
   CHECK(count_files(folder) == 1);
 }
 
+TEST_CASE("all problems of files that were not written are thrown together") {
+  CHECK_NOTHROW(require_written({"", ""}));
+  CHECK_THROWS_WITH(require_written({"", "a picture"}), "a picture");
+  CHECK_THROWS_WITH(require_written({"a report", "", "a picture"}), "a report; a picture");
+}
+
 TEST_CASE("a pipe without a reader is reported and does not block") {
   const TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");
