@@ -105,6 +105,7 @@ static void print_tracked(const sidestep_msg_TrackedRobot* m) {
   REAL(m, angular_radps), REAL(m, position_variance_m2), REAL(m, velocity_variance_m2ps2),
       SIGNED(m, observed_at_ns);
   REAL(m, observed_x_m), REAL(m, observed_y_m), REAL(m, observed_heading_rad);
+  BOOL(m, is_seen_elsewhere);
 }
 static void print_world(const sidestep_msg_WorldState* m) {
   UNSIGNED(m, vision), OBJECT(m, header, print_header), SIGNED(m, valid_at_ns), UNSIGNED(m, frames);
