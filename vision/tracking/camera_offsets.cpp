@@ -7,8 +7,6 @@
 namespace sidestep {
 namespace {
 
-/// Frames of one camera that are further apart are not interpolated.
-constexpr Duration kMaxInterpolation{60'000'000};
 /// A sample further from the mean than this many standard deviations, plus kMinGate_m, is not of the same
 /// robot or place, unless there are kMaxContradictions in sequence: then a camera was moved.
 constexpr double kOffsetGateDeviations = 5, kMinGate_m = 0.01;

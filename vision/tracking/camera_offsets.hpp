@@ -35,6 +35,8 @@ class CameraOffsets {
   static constexpr double kMinOffset_m = 0.003;
   /// Greater differences are not of one robot, or belong to cameras that must be calibrated.
   static constexpr double kMaxOffset_m = 0.15;
+  /// Frames of one camera that are further apart are not interpolated.
+  static constexpr Duration kMaxInterpolation{60'000'000};
   static constexpr double kMaxChange_mps = 0.01;  ///< maximum rate of change of a camera's correction
 
   explicit CameraOffsets(const std::vector<std::uint32_t>& cameras);

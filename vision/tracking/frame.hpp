@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -64,6 +66,14 @@ class Frame {
               Duration date_uncertainty = Duration{0});
   /// Moves all detections.
   void translate(const Vec2& by_m);
+  /// Calls `keep` with each robot, which it may change, and removes those for which it returns false.
+  template <typename Keep>
+  void keep_robots(Keep keep) {
+    const auto begin = robots_.begin();
+    const auto end = std::remove_if(begin, begin + static_cast<std::ptrdiff_t>(robot_count_),
+                                    [&](RobotPoseObservation& robot) { return !keep(robot); });
+    robot_count_ = static_cast<std::size_t>(end - begin);
+  }
 
  private:
   void clear(const msg::DetectionFrame& message);

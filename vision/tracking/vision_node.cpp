@@ -52,6 +52,7 @@ void VisionNode::add_frame(const msg::DetectionFrame& message, Duration date_unc
   if (frame_.is_usable()) {
     offsets_.add(frame_);
     frame_.translate(offsets_.correction_m(frame_.camera()));
+    handovers_.shift(frame_);
   }
   tracker_.update(frame_);
   if (frame_.is_usable()) watch_.on_frame(frame_.camera(), frame_.captured_at());
@@ -65,6 +66,7 @@ void VisionNode::count_drops(DropCounters& drops) const {
 
 void VisionNode::on_clock_set_back(Duration by) {
   offsets_.forget();
+  handovers_.forget();
   tracker_.forget();
   watch_.forget();
   next_ -= by;
@@ -74,6 +76,7 @@ void VisionNode::publish() {
   const Time now = bus_.now();
   if (now < next_ - period_) on_clock_set_back(next_ - now);
   offsets_.advance(period_);
+  handovers_.advance(period_);
   tracker_.set_camera_error(offsets_.noise_m());
   tracker_.world_at(now, world_);
   tracker_.obstacles_at(world_, obstacles_);

@@ -8,6 +8,7 @@
 #include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/messaging/counter_publisher.hpp"
+#include "vision/tracking/camera_handovers.hpp"
 #include "vision/tracking/camera_offsets.hpp"
 #include "vision/tracking/camera_watch.hpp"
 #include "vision/tracking/tracker.hpp"
@@ -67,6 +68,7 @@ class VisionNode {
   Duration max_lead_;  // maximum lead of a frame's capture time
   Frame frame_;
   CameraOffsets offsets_;
+  CameraHandovers handovers_;
   Tracker tracker_;
   CameraWatch watch_;
   msg::WorldState world_;

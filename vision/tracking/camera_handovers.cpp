@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/tracking/camera_handovers.hpp"
+
+#include <algorithm>
+
+namespace sidestep {
+namespace {
+
+/// A camera that has not seen the robot for longer begins anew.
+constexpr Duration kMaxAbsence{500'000'000};
+constexpr Duration kMaxInterpolation = CameraOffsets::kMaxInterpolation;
+/// After so many frames without a comparison, the camera is used as it is.
+constexpr int kMaxFrames = 5;
+
+Vec2 faded(const Vec2& shift_m, double by_m) {
+  const double length_m = shift_m.norm();
+  return length_m <= by_m ? Vec2(0, 0) : Vec2(shift_m * (1 - by_m / length_m));
+}
+
+}  // namespace
+
+void CameraHandovers::shift(Frame& frame) {
+  frame.keep_robots([&](RobotPoseObservation& robot) {
+    Sights& sights = robots_[robot.robot];
+    Sight& sight = sight_of(sights, frame.camera(), frame.captured_at());
+    update(sights, sight, frame.captured_at(), robot.position_m);
+    robot.position_m += sight.shift_m;
+    return sight.is_known;
+  });
+}
+
+/// The camera's entry, or the one that was used least recently.
+CameraHandovers::Sight& CameraHandovers::sight_of(Sights& sights, std::uint32_t camera, Time captured_at) {
+  auto found = std::ranges::find_if(
+      sights, [camera](const Sight& sight) { return sight.frames > 0 && sight.camera == camera; });
+  if (found == sights.end()) {
+    found = std::ranges::min_element(
+        sights, {}, [](const Sight& sight) { return sight.frames == 0 ? Time::min() : sight.captured_at; });
+    *found = Sight();
+  } else if (captured_at - found->captured_at > kMaxAbsence) {
+    *found = Sight();
+  }
+  found->camera = camera;
+  return *found;
+}
+
+void CameraHandovers::update(Sights& sights, Sight& sight, Time captured_at, const Vec2& position_m) {
+  const Sight before = sight;
+  if (before.frames > 0 && captured_at <= before.captured_at) return;
+  sight.frames = std::min(before.frames + 1, kMaxFrames);
+  sight.captured_at = captured_at;
+  sight.position_m = position_m;
+  if (sight.is_known) return;
+  bool is_alone = true;
+  for (const Sight& other : sights) {
+    if (!other.is_known || other.camera == sight.camera) continue;
+    if (std::chrono::abs(captured_at - other.captured_at) > kMaxInterpolation) continue;
+    is_alone = false;
+    if (before.frames == 0 || captured_at - before.captured_at > kMaxInterpolation ||
+        other.captured_at < before.captured_at || other.captured_at > captured_at)
+      continue;
+    const double part =
+        to_seconds(other.captured_at - before.captured_at) / to_seconds(captured_at - before.captured_at);
+    const Vec2 here_m = before.position_m + part * (position_m - before.position_m);
+    const Vec2 shift_m = other.position_m + other.shift_m - here_m;
+    sight.is_known = true;
+    // Further apart they do not see the same robot. The comparisons are false for NaN.
+    if (shift_m.norm() > CameraOffsets::kMinOffset_m && shift_m.norm() <= CameraOffsets::kMaxOffset_m)
+      sight.shift_m = shift_m;
+    return;
+  }
+  sight.is_known = is_alone || sight.frames == kMaxFrames;
+}
+
+void CameraHandovers::advance(Duration elapsed) {
+  const double by_m = CameraOffsets::kMaxChange_mps * std::max(to_seconds(elapsed), 0.0);
+  for (Sights& sights : robots_) {
+    for (Sight& sight : sights) sight.shift_m = faded(sight.shift_m, by_m);
+  }
+}
+
+void CameraHandovers::forget() { robots_.assign(robots_.size(), Sights()); }
+
+}  // namespace sidestep
