@@ -161,7 +161,7 @@ void read_vision(YamlMap& map, VisionSpec& vision) {
 
 void read_odometry(YamlMap& map, OdometrySpec& odometry) {
   read_section(map, "odometry", [&](YamlMap& inner) {
-    inner.read("scale_error", {0, 0.05}, odometry.scale_error);
+    inner.read("scale_error", {0, 0.5}, odometry.scale_error);
     inner.read("velocity_noise_mps", {0, 1}, odometry.velocity_noise_mps);
   });
 }
