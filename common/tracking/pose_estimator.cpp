@@ -88,6 +88,9 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   if (!(innovation.squaredNorm() <= kOutlierDeviations * kOutlierDeviations * expected)) decorrelate_scale();
   if (detect_displacement({innovation, expected})) {
     jump_m_ = innovation.norm();
+    // A base may suddenly follow its commands by another part, such as that of a simulator whose computer is
+    // busy.
+    if (has_unmeasured_motion()) covariance_(2, 2) = settings_.scale_error * settings_.scale_error;
     covariance_.topLeftCorner<2, 2>() += jump_m_ * jump_m_ * Eigen::Matrix2d::Identity();
   }
   const Eigen::Matrix2d innovation_variance =
@@ -125,9 +128,8 @@ void PoseEstimator::decorrelate_scale() {
 Eigen::Matrix3d PoseEstimator::covariance_after(double elapsed_s, const Vec2& moved_m) const {
   Eigen::Matrix3d transition = Eigen::Matrix3d::Identity();
   transition.topRightCorner<2, 1>() = -moved_m;
-  // If part of the motion since the anchor was only commanded, all of it counts as commanded.
   const double noise_mps =
-      commanded_at_ <= anchor_time_ ? settings_.velocity_noise_mps : settings_.commanded_noise_mps;
+      has_unmeasured_motion() ? settings_.commanded_noise_mps : settings_.velocity_noise_mps;
   const double noise_variance = noise_mps * noise_mps;
   const double position_variance =
       (noise_variance * to_seconds(settings_.period) + kSlipVariance_m2ps) * elapsed_s;

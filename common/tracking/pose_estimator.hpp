@@ -50,7 +50,8 @@ class PoseEstimator {
   /// finite, from the future, older than kHistoryPeriods, or not newer than the last one.
   ///
   /// Fixes that agree with each other but not with the odometry show that the robot was displaced without its
-  /// wheels measuring it; the estimate then follows the fixes.
+  /// wheels measuring it; the estimate then follows the fixes. If the motion was only commanded, the robot
+  /// may follow its commands less or more than before, and the scale is learned anew.
   bool correct(Time captured_at, const Vec2& position_m, double heading_rad);
 
   /// The robot's clock was set by `change`. Shifts all recorded times, so that their age stays the same.
@@ -90,6 +91,8 @@ class PoseEstimator {
     Vec2 offset_m{0, 0};
     double variance_m2 = 0;  ///< expected variance on each axis
   };
+  /// If part of the motion since the anchor was only commanded, all of it counts as commanded.
+  bool has_unmeasured_motion() const { return commanded_at_ > anchor_time_; }
   bool detect_displacement(const Innovation& latest);
   void decorrelate_scale();
   Eigen::Matrix3d covariance_after(double elapsed_s, const Vec2& moved_m) const;

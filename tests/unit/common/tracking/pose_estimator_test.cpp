@@ -150,4 +150,54 @@ TEST_CASE("two fixes of a robot that was put elsewhere give it its new place and
   CHECK(wrapped_rad(estimator.heading_rad() - 2.5) == Approx(0).margin(0.01));
 }
 
+// A base that follows its commands by this part, and does not measure its motion.
+struct CommandedRobot {
+  explicit CommandedRobot(std::uint64_t seed) : rng(seed) {}
+
+  /// Drives in a circle for a while. Returns the number of displacements that were found.
+  int drive(Duration duration, double part) {
+    int jumps = 0;
+    for (const Time end = now + duration; now < end;) {
+      const Vec2 commanded_mps = rotated(Vec2(1.3, 0), 0.7 * to_seconds(now - kBegin));
+      now += settings.period;
+      position_m += part * to_seconds(settings.period) * commanded_mps;
+      estimator.advance(now, {commanded_mps, 0}, {0, 0}, 0, false);
+      if (++steps % 2 == 0) waiting.push_back({now, position_m + 0.0015 * normal_vector(rng)});
+      if (waiting.empty() || waiting.front().first + milliseconds(60) > now) continue;
+      REQUIRE(estimator.correct(waiting.front().first, waiting.front().second, 0));
+      waiting.pop_front();
+      jumps += estimator.jump_m() > 0 ? 1 : 0;
+    }
+    return jumps;
+  }
+
+  EstimatorSettings settings{.velocity_noise_mps = 0.01,
+                             .scale_error = 0.2,
+                             .fix_noise_m = 0.0015,
+                             .velocity_gain = 1,
+                             .period = milliseconds(10),
+                             .commanded_noise_mps = 0.05};
+  Rng rng;
+  Time now = kBegin;
+  Vec2 position_m{0, 0};
+  PoseEstimator estimator{position_m, 0, kBegin, settings};
+  int steps = 0;
+  std::deque<std::pair<Time, Vec2>> waiting;
+};
+
+TEST_CASE("a robot that suddenly follows its commands by another part learns that at once") {
+  const std::uint64_t seed = GENERATE(1, 2, 3, 4, 5);
+  const double before = GENERATE(1.0, 0.98), after = GENERATE(0.66, 0.8);
+  CAPTURE(seed, before, after);
+  CommandedRobot run(seed);
+  run.drive(std::chrono::seconds(3), before);
+  CHECK(std::abs(1 - run.estimator.scale_error() - before) < 0.02);
+  CHECK(run.estimator.odometry_scale_stddev() < 0.01);
+  CHECK(run.drive(milliseconds(300), after) <= 2);
+  CHECK(std::abs(1 - run.estimator.scale_error() - after) < 0.04);
+  CHECK((run.estimator.position_m() - run.position_m).norm() < 0.006);
+  CHECK(run.drive(std::chrono::seconds(3), after) == 0);
+  CHECK(std::abs(1 - run.estimator.scale_error() - after) < 0.02);
+}
+
 }  // namespace sidestep::pose_estimator_test
