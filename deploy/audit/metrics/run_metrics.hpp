@@ -102,7 +102,7 @@ class RunMetrics {
   /// Number of invalid or outdated messages that were ignored here.
   std::uint64_t dropped_messages() const { return dropped_messages_; }
 
-  /// The last sighting of each robot that has been seen.
+  /// The last sighting of each robot that has been seen and is not off the floor.
   std::vector<RobotSighting> sightings() const;
   std::vector<RobotProgress> progress() const;
   /// The report, except for floor_trace() and what only the caller knows: program, seed, wall-clock times,

@@ -32,7 +32,8 @@ std::uint64_t sum(const std::vector<msg::AgentStatus>& incarnations,
 std::vector<RobotSighting> RunMetrics::sightings() const {
   std::vector<RobotSighting> result;
   for (const RobotRecord& robot : robots_) {
-    if (robot.sighting) result.push_back(*robot.sighting);
+    const bool is_lifted = robot.status() && robot.status()->agent_state() == msg::AgentState::AGENT_ABSENT;
+    if (robot.sighting && !is_lifted) result.push_back(*robot.sighting);
   }
   return result;
 }

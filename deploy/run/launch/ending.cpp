@@ -42,6 +42,9 @@ void Ending::see(Time now, std::span<const RobotSighting> sightings) {
       if (latest - sighting.at <= kMaxSilence) robots_.emplace(sighting.robot, RestWatch(sighting));
     }
   }
+  std::erase_if(robots_, [&](const auto& watched) {
+    return std::ranges::find(sightings, watched.first, &RobotSighting::robot) == sightings.end();
+  });
   for (const RobotSighting& sighting : sightings) {
     const auto found = robots_.find(sighting.robot);
     if (found != robots_.end() && found->second.see(sighting, settings_.tolerance_m)) heard_at_ = now;

@@ -63,8 +63,8 @@ class Ending {
 
   Ending(const EndingSettings& settings, Time begin);
 
-  /// `sightings`: the last one of each robot. Those that were last seen kMaxSilence before the others, when
-  /// this is first called, are not on the floor and are ignored.
+  /// `sightings`: the last one of each robot on the floor. Those that were last seen kMaxSilence before the
+  /// others, when this is first called, are not on the floor and are ignored.
   Step update(Time now, std::span<const RobotSighting> sightings, const MovingProcesses& running);
 
   /// The robots that are not known to rest.

@@ -608,6 +608,9 @@ TEST_CASE("sightings are the latest places of robots that were seen, by ground t
   CHECK(metrics.sightings()[0].speed_mps == Approx(1.5));
   CHECK(metrics.sightings()[1].position_m == Vec2(0.75, 1));
   CHECK(metrics.sightings()[1].at == after(2));
+  metrics.on_status(status(3, 1, msg::AgentState::AGENT_ABSENT));
+  REQUIRE(metrics.sightings().size() == 1);
+  CHECK(metrics.sightings()[0].robot == 7);
 }
 
 }  // namespace sidestep::run_metrics_test

@@ -165,6 +165,21 @@ TEST_CASE("a robot that has not been seen for long is not waited for") {
   CHECK(ending.problem().empty());
 }
 
+TEST_CASE("a robot that is taken off the floor while robots come to rest is not waited for") {
+  Floor floor;
+  CHECK(floor.run(100ms) == Step::kRobotsStop);
+  floor.is_seen = false;
+  floor.sightings.erase(floor.sightings.begin());
+  floor.running = {false, false};
+  for (const Time end = floor.now + 400ms; floor.now < end;) {
+    floor.advance();
+    floor.sightings[0].at = floor.now;
+    floor.update();
+  }
+  CHECK(floor.update() == Step::kOver);
+  CHECK(floor.ending.problem().empty());
+}
+
 TEST_CASE("a robot whose position is not a number never rests") {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   RestWatch watch({3, kBegin, {kNan, 0}, 0});
