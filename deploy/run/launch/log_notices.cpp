@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/run/launch/log_notices.hpp"
 
+#include <algorithm>
+#include <array>
 #include <sstream>
 
 namespace sidestep {
+namespace {
+
+/// What every process logs at its start begins so.
+constexpr std::array<std::string_view, 2> kStartTexts{"Fast DDS ", "safety budget: "};
+
+}  // namespace
 
 std::optional<std::string> notice_of(std::string_view line, LogLevel min_level) {
   // "vision: 2026-11-29 06:00:00.123 warning sidestep-vision: camera 1 is lost"
@@ -15,6 +23,8 @@ std::optional<std::string> notice_of(std::string_view line, LogLevel min_level) 
   if (!severity || *severity < min_level || text.empty() || !process.ends_with(':') ||
       !program.ends_with(':'))
     return std::nullopt;
+  const auto begins_text = [&](std::string_view start) { return text.starts_with(start); };
+  if (*severity < LogLevel::kWarning && std::ranges::any_of(kStartTexts, begins_text)) return std::nullopt;
   return process + " " + text;
 }
 

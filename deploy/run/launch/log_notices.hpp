@@ -12,7 +12,8 @@
 namespace sidestep {
 
 /// The process and the text of a line in the log of a ProcessGroup, such as "vision: camera 1 is lost", if
-/// its level is at least `min_level`. nullopt for other lines, and for lines of another form.
+/// its level is at least `min_level`. nullopt for other lines, for what every process says at its start, and
+/// for lines of another form.
 [[nodiscard]] std::optional<std::string> notice_of(std::string_view line, LogLevel min_level);
 
 /// Reads what the children of a ProcessGroup log, while they run, to show it to the user.

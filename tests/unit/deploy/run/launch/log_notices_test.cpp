@@ -19,6 +19,15 @@ TEST_CASE("a notice is the process and the text of a line of at least the level"
   }
 }
 
+TEST_CASE("what every process says at its start is no notice, unless it is a warning") {
+  const auto line = [](const std::string& level, const std::string& text) {
+    return "vision: 2026-11-29 06:00:00.123 " + level + " sidestep-vision: " + text;
+  };
+  CHECK_FALSE(notice_of(line("info   ", "Fast DDS 2.9.1, domain 10"), LogLevel::kInfo));
+  CHECK_FALSE(notice_of(line("info   ", "safety budget: margin 68.0 mm"), LogLevel::kInfo));
+  CHECK(notice_of(line("warning", "safety budget: margin 68.0 mm"), LogLevel::kInfo));
+}
+
 TEST_CASE("notices are complete lines that were written since the last call") {
   const TemporaryFolder folder;
   std::ofstream log(folder.file("log"));
