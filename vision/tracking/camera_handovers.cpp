@@ -2,6 +2,7 @@
 #include "vision/tracking/camera_handovers.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace sidestep {
 namespace {
@@ -17,7 +18,15 @@ Vec2 faded(const Vec2& shift_m, double by_m) {
   return length_m <= by_m ? Vec2(0, 0) : Vec2(shift_m * (1 - by_m / length_m));
 }
 
+/// The noise of two observations exceeds this many of their standard deviations less than once in 100,000
+/// times.
+constexpr double kNoiseDeviations = 5;
+
 }  // namespace
+
+CameraHandovers::CameraHandovers(double noise_m)
+    : min_shift_m_(std::max(CameraOffsets::kMinOffset_m, kNoiseDeviations * std::numbers::sqrt2 * noise_m)),
+      robots_(kMaxRobots) {}
 
 void CameraHandovers::shift(Frame& frame) {
   frame.keep_robots([&](RobotPoseObservation& robot) {
@@ -44,7 +53,8 @@ CameraHandovers::Sight& CameraHandovers::sight_of(Sights& sights, std::uint32_t 
   return *found;
 }
 
-void CameraHandovers::update(Sights& sights, Sight& sight, Time captured_at, const Vec2& position_m) {
+void CameraHandovers::update(const Sights& sights, Sight& sight, Time captured_at,
+                             const Vec2& position_m) const {
   const Sight before = sight;
   if (before.frames > 0 && captured_at <= before.captured_at) return;
   sight.frames = std::min(before.frames + 1, kMaxFrames);
@@ -65,7 +75,7 @@ void CameraHandovers::update(Sights& sights, Sight& sight, Time captured_at, con
     const Vec2 shift_m = other.position_m + other.shift_m - here_m;
     sight.is_known = true;
     // Further apart they do not see the same robot. The comparisons are false for NaN.
-    if (shift_m.norm() > CameraOffsets::kMinOffset_m && shift_m.norm() <= CameraOffsets::kMaxOffset_m)
+    if (shift_m.norm() > min_shift_m_ && shift_m.norm() <= CameraOffsets::kMaxOffset_m)
       sight.shift_m = shift_m;
     return;
   }

@@ -18,7 +18,9 @@ namespace sidestep {
 /// The shift then fades as fast as corrections change. Allocates only in the constructor.
 class CameraHandovers {
  public:
-  CameraHandovers() : robots_(kMaxRobots) {}
+  /// `noise_m`: standard deviation of a robot's observed position on each axis. What it explains is no
+  /// difference between cameras.
+  explicit CameraHandovers(double noise_m);
 
   /// Shifts the robots of a usable frame that is already corrected by CameraOffsets. Removes robots whose
   /// shift is not yet known: it is after the camera's second frame, unless the other camera saw nothing
@@ -43,8 +45,9 @@ class CameraHandovers {
   using Sights = std::array<Sight, kMaxCameras>;
 
   static Sight& sight_of(Sights& sights, std::uint32_t camera, Time captured_at);
-  static void update(Sights& sights, Sight& sight, Time captured_at, const Vec2& position_m);
+  void update(const Sights& sights, Sight& sight, Time captured_at, const Vec2& position_m) const;
 
+  double min_shift_m_;
   std::vector<Sights> robots_;  ///< indexed by robot
 };
 

@@ -20,6 +20,7 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
       next_(bus.now() + period_),
       max_lead_(max_vision_lead(max_clock_difference(scenario.clock_bound_s))),
       offsets_(cameras),
+      handovers_(tracker_settings(scenario).robot.position_noise_m),
       tracker_(tracker_settings(scenario), roster_of(scenario)),
       watch_(cameras),
       world_writer_(bus.advertise(topics::kWorld)),

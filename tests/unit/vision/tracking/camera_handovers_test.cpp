@@ -29,7 +29,7 @@ class TwoViews {
     return frame_.robots()[0].position_m;
   }
 
-  CameraHandovers handovers;
+  CameraHandovers handovers{0.0002};
 
  private:
   Frame frame_;
@@ -62,6 +62,25 @@ TEST_CASE("a robot that passes from one camera to another does not jump, and its
   CHECK(max_step_m < 11 / 60.0 * CameraOffsets::kMaxChange_mps + 1e-4);
   CHECK(max_error_m <= views.errors_m[1].norm() + 1e-9);
   CHECK(last_error_m < 1e-9);
+}
+
+TEST_CASE("cameras that differ only by their noise shift no robot") {
+  const double noise_m = GENERATE(0.0015, 0.008);
+  Rng rng(1);
+  int shifted = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    TwoViews views;
+    views.handovers = CameraHandovers(noise_m);
+    for (int i = 0; i < 10; ++i) {
+      for (const std::uint32_t camera : {0U, 1U}) {
+        if (camera == 1 && i < 4) continue;
+        views.errors_m[camera] = noise_m * normal_vector(rng);
+        const auto seen_m = views.show(camera, 1 + i / 60.0 + camera * views.delay_s, {1, 1});
+        shifted += seen_m && (*seen_m - Vec2(1, 1) - views.errors_m[camera]).norm() > 1e-9 ? 1 : 0;
+      }
+    }
+  }
+  CHECK(shifted == 0);
 }
 
 TEST_CASE("a robot that only one camera sees is never removed or shifted") {
