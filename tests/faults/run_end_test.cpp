@@ -24,12 +24,12 @@ class ProcessEnds {
   /// Must be called often. Returns whether a process has ended.
   bool observe() {
     for (const auto& [name, pid] : pids_) {
-      if (!speeds_mps_.count(name) && !is_running(pid)) speeds_mps_[name] = run_.max_speed_mps();
+      if (!speeds_mps_.count(name) && !is_running(pid)) speeds_mps_[name] = speed_beside_mps(name);
     }
     return !speeds_mps_.empty();
   }
   bool has_ended(const std::string& process) const { return speeds_mps_.count(process) > 0; }
-  /// The processes, other than those that were killed, that ended while a robot drove.
+  /// The processes, other than those that were killed, that ended while a robot drove; for an agent, its own.
   std::set<std::string> early(const std::set<std::string>& killed = {}) const {
     std::set<std::string> result;
     for (const auto& [name, speed_mps] : speeds_mps_) {
@@ -39,6 +39,13 @@ class ProcessEnds {
   }
 
  private:
+  /// The speed of the robots that the process moves.
+  double speed_beside_mps(const std::string& process) const {
+    const std::string agent = "agent ";
+    if (!process.starts_with(agent)) return run_.max_speed_mps();
+    return run_.speed_mps(static_cast<RobotId>(std::stoul(process.substr(agent.size()))));
+  }
+
   const LaunchedRun& run_;
   std::map<std::string, pid_t> pids_;
   std::map<std::string, double> speeds_mps_;
