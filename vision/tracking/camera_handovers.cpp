@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 namespace sidestep {
 namespace {
@@ -73,6 +74,9 @@ void CameraHandovers::update(const Sights& sights, Sight& sight, Time captured_a
         to_seconds(other.captured_at - before.captured_at) / to_seconds(captured_at - before.captured_at);
     const Vec2 here_m = before.position_m + part * (position_m - before.position_m);
     const Vec2 shift_m = other.position_m + other.shift_m - here_m;
+    const auto last_m = std::exchange(sight.compared_m, shift_m);
+    // A false detection of one of the cameras contradicts the other comparisons.
+    if (!last_m || !((shift_m - *last_m).norm() <= min_shift_m_)) break;
     sight.is_known = true;
     // Further apart they do not see the same robot. The comparisons are false for NaN.
     if (shift_m.norm() > min_shift_m_ && shift_m.norm() <= CameraOffsets::kMaxOffset_m)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/vec2.hpp"
@@ -23,8 +24,8 @@ class CameraHandovers {
   explicit CameraHandovers(double noise_m);
 
   /// Shifts the robots of a usable frame that is already corrected by CameraOffsets. Removes robots whose
-  /// shift is not yet known: it is after the camera's second frame, unless the other camera saw nothing
-  /// meanwhile.
+  /// shift is not yet known: it is after two comparisons that agree, in the camera's third frame, or in its
+  /// fifth at the latest.
   void shift(Frame& frame);
   /// Lets shifts fade during this time.
   void advance(Duration elapsed);
@@ -39,7 +40,8 @@ class CameraHandovers {
     Time captured_at{};
     Vec2 position_m{0, 0};  ///< without the shift
     Vec2 shift_m{0, 0};
-    bool is_known = false;  ///< whether shift_m is known
+    bool is_known = false;           ///< whether shift_m is known
+    std::optional<Vec2> compared_m;  ///< the shift by the last comparison with another camera
   };
   static constexpr std::size_t kMaxCameras = 4;  ///< number of cameras that see a robot at once
   using Sights = std::array<Sight, kMaxCameras>;
