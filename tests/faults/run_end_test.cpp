@@ -72,51 +72,50 @@ void check_contacts(const LaunchedRun& run) {
 
 nlohmann::json ending_of(const LaunchedRun& run) { return run.report()["ending"]; }
 
-}  // namespace
+/// What ends a run: the limit, or a signal to the launcher.
+const std::vector<std::string> kEndings{"limit", "SIGINT", "SIGTERM"};
 
-TEST_CASE("at the time limit and at Ctrl-C, all robots rest before any process of the run ends") {
-  const std::string cause = GENERATE("limit", "SIGINT", "SIGTERM");
-  CAPTURE(cause);
-  LaunchedRun run(shuttles(20, ""),
-                  cause == "limit" ? std::vector<std::string>{"--seconds", "3"} : std::vector<std::string>{});
+std::vector<std::string> options_for(const std::string& ending) {
+  return ending == "limit" ? std::vector<std::string>{"--seconds", "3"} : std::vector<std::string>{};
+}
+
+/// Ends a run whose robots drive, and checks that all rest before any of its processes ends. Returns how long
+/// that took by the report, in seconds.
+double check_ending(LaunchedRun& run, const std::string& ending) {
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
   ProcessEnds ends(run);
-  if (cause != "limit") REQUIRE(kill(run.pid(), cause == "SIGINT" ? SIGINT : SIGTERM) == 0);
+  if (ending != "limit") REQUIRE(kill(run.pid(), ending == "SIGINT" ? SIGINT : SIGTERM) == 0);
   observe_to_end(run, ends);
   INFO(run.output());
   CHECK(ends.early().empty());
   check_contacts(run);
-  const auto ending = ending_of(run);
-  INFO(json_text(ending));
-  CHECK(ending["cause"] == (cause == "limit" ? "time limit of 3 s" : "interrupted"));
-  CHECK(ending["contacts"] == 0);
-  CHECK(ending["problem"].is_null());
-  CHECK(ending["duration_s"] > 0.2);
-  CHECK(ending["duration_s"] < 4.5);
+  const auto reported = ending_of(run);
+  INFO(json_text(reported));
+  CHECK(reported["cause"] == (ending == "limit" ? "time limit of 3 s" : "interrupted"));
+  CHECK(reported["contacts"] == 0);
+  CHECK(reported["problem"].is_null());
   CHECK(run.report()["deaths"].empty());
   CHECK_FALSE(run.printed("was killed"));
+  return reported["duration_s"].get<double>();
+}
+
+}  // namespace
+
+TEST_CASE("at the time limit and at Ctrl-C, all robots rest before any process of the run ends") {
+  const std::string ending = GENERATE(from_range(kEndings));
+  CAPTURE(ending);
+  LaunchedRun run(shuttles(20, ""), options_for(ending));
+  const double duration_s = check_ending(run, ending);
+  CHECK(duration_s > 0.2);
+  CHECK(duration_s < 4.5);
 }
 
 TEST_CASE("at the time limit and at Ctrl-C, driven bases rest before any process of the run ends",
           "[both-cores]") {
-  const std::string cause = GENERATE("limit", "SIGINT", "SIGTERM");
-  CAPTURE(cause);
-  ExternalSimulatorRun floor(
-      shipped_scenario("league/crossing"), {},
-      cause == "limit" ? std::vector<std::string>{"--seconds", "3"} : std::vector<std::string>{});
-  LaunchedRun& run = floor.run();
-  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
-  ProcessEnds ends(run);
-  if (cause != "limit") REQUIRE(kill(run.pid(), cause == "SIGINT" ? SIGINT : SIGTERM) == 0);
-  observe_to_end(run, ends);
-  INFO(run.output());
-  CHECK(ends.early().empty());
-  check_contacts(run);
-  const auto ending = ending_of(run);
-  INFO(json_text(ending));
-  CHECK(ending["problem"].is_null());
-  CHECK(ending["contacts"] == 0);
-  CHECK(run.report()["deaths"].empty());
+  const std::string ending = GENERATE(from_range(kEndings));
+  CAPTURE(ending);
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"), {}, options_for(ending));
+  check_ending(floor.run(), ending);
 }
 
 TEST_CASE("without ground truth, vision judges that driven bases have come to rest", "[both-cores]") {

@@ -10,7 +10,8 @@ namespace {
 
 /// A camera that has not seen the robot for longer begins anew.
 constexpr Duration kMaxAbsence{500'000'000};
-constexpr Duration kMaxInterpolation = CameraOffsets::kMaxInterpolation;
+/// A camera whose latest sighting is older has lost the robot.
+constexpr Duration kRecent{60'000'000};
 /// After so many frames without a comparison, the camera is used as it is.
 constexpr int kMaxFrames = 5;
 
@@ -33,7 +34,7 @@ void CameraHandovers::shift(Frame& frame) {
   frame.keep_robots([&](RobotPoseObservation& robot) {
     Sights& sights = robots_[robot.robot];
     Sight& sight = sight_of(sights, frame.camera(), frame.captured_at());
-    update(sights, sight, frame.captured_at(), robot.position_m);
+    update(sights, sight, {frame.captured_at(), robot.position_m});
     robot.position_m += sight.shift_m;
     return sight.is_known;
   });
@@ -44,36 +45,32 @@ CameraHandovers::Sight& CameraHandovers::sight_of(Sights& sights, std::uint32_t 
   auto found = std::ranges::find_if(
       sights, [camera](const Sight& sight) { return sight.frames > 0 && sight.camera == camera; });
   if (found == sights.end()) {
-    found = std::ranges::min_element(
-        sights, {}, [](const Sight& sight) { return sight.frames == 0 ? Time::min() : sight.captured_at; });
+    found = std::ranges::min_element(sights, {}, [](const Sight& sight) {
+      return sight.frames == 0 ? Time::min() : sight.latest.captured_at;
+    });
     *found = Sight();
-  } else if (captured_at - found->captured_at > kMaxAbsence) {
+  } else if (captured_at - found->latest.captured_at > kMaxAbsence) {
     *found = Sight();
   }
   found->camera = camera;
   return *found;
 }
 
-void CameraHandovers::update(const Sights& sights, Sight& sight, Time captured_at,
-                             const Vec2& position_m) const {
-  const Sight before = sight;
-  if (before.frames > 0 && captured_at <= before.captured_at) return;
-  sight.frames = std::min(before.frames + 1, kMaxFrames);
-  sight.captured_at = captured_at;
-  sight.position_m = position_m;
+void CameraHandovers::update(const Sights& sights, Sight& sight, const CameraSighting& now) const {
+  const bool is_first = sight.frames == 0;
+  if (!is_first && now.captured_at <= sight.latest.captured_at) return;
+  const CameraSighting before = std::exchange(sight.latest, now);
+  sight.frames = std::min(sight.frames + 1, kMaxFrames);
   if (sight.is_known) return;
   bool is_alone = true;
   for (const Sight& other : sights) {
     if (!other.is_known || other.camera == sight.camera) continue;
-    if (std::chrono::abs(captured_at - other.captured_at) > kMaxInterpolation) continue;
+    if (std::chrono::abs(now.captured_at - other.latest.captured_at) > kRecent) continue;
     is_alone = false;
-    if (before.frames == 0 || captured_at - before.captured_at > kMaxInterpolation ||
-        other.captured_at < before.captured_at || other.captured_at > captured_at)
-      continue;
-    const double part =
-        to_seconds(other.captured_at - before.captured_at) / to_seconds(captured_at - before.captured_at);
-    const Vec2 here_m = before.position_m + part * (position_m - before.position_m);
-    const Vec2 shift_m = other.position_m + other.shift_m - here_m;
+    if (is_first) continue;
+    const auto here_m = position_between(before, now, other.latest.captured_at);
+    if (!here_m) continue;
+    const Vec2 shift_m = other.latest.position_m + other.shift_m - *here_m;
     const auto last_m = std::exchange(sight.compared_m, shift_m);
     // A false detection of one of the cameras contradicts the other comparisons.
     if (!last_m || !((shift_m - *last_m).norm() <= min_shift_m_)) break;

@@ -36,9 +36,8 @@ class CameraHandovers {
   /// How a camera sees a robot.
   struct Sight {
     std::uint32_t camera = 0;
-    int frames = 0;  ///< number of frames since the camera began to see the robot; 0: it does not
-    Time captured_at{};
-    Vec2 position_m{0, 0};  ///< without the shift
+    int frames = 0;         ///< number of frames since the camera began to see the robot; 0: it does not
+    CameraSighting latest;  ///< without the shift
     Vec2 shift_m{0, 0};
     bool is_known = false;           ///< whether shift_m is known
     std::optional<Vec2> compared_m;  ///< the shift by the last comparison with another camera
@@ -47,7 +46,7 @@ class CameraHandovers {
   using Sights = std::array<Sight, kMaxCameras>;
 
   static Sight& sight_of(Sights& sights, std::uint32_t camera, Time captured_at);
-  void update(const Sights& sights, Sight& sight, Time captured_at, const Vec2& position_m) const;
+  void update(const Sights& sights, Sight& sight, const CameraSighting& now) const;
 
   double min_shift_m_;
   std::vector<Sights> robots_;  ///< indexed by robot

@@ -7,6 +7,8 @@
 namespace sidestep {
 namespace {
 
+/// Frames of one camera that are further apart are not interpolated.
+constexpr Duration kMaxInterpolation{60'000'000};
 /// A sample further from the mean than this many standard deviations, plus kMinGate_m, is not of the same
 /// robot or place, unless there are kMaxContradictions in sequence: then a camera was moved.
 constexpr double kOffsetGateDeviations = 5, kMinGate_m = 0.01;
@@ -27,6 +29,14 @@ bool is_significant(const CameraDisagreement& pair) {
 
 }  // namespace
 
+std::optional<Vec2> position_between(const CameraSighting& before, const CameraSighting& after, Time at) {
+  const Duration period = after.captured_at - before.captured_at;
+  if (period <= Duration{0} || period > kMaxInterpolation) return std::nullopt;
+  if (at < before.captured_at || at > after.captured_at) return std::nullopt;
+  const double part = to_seconds(at - before.captured_at) / to_seconds(period);
+  return before.position_m + part * (after.position_m - before.position_m);
+}
+
 CameraOffsets::CameraOffsets(const std::vector<std::uint32_t>& cameras) : robots_(kMaxRobots) {
   for (const std::uint32_t camera : cameras) corrections_m_.emplace(camera, Vec2(0, 0));
   pairs_.reserve(kMaxPairs);
@@ -35,7 +45,7 @@ CameraOffsets::CameraOffsets(const std::vector<std::uint32_t>& cameras) : robots
 void CameraOffsets::add(const Frame& frame) {
   for (const RobotPoseObservation& robot : frame.robots()) {
     Sightings& sightings = robots_[robot.robot];
-    const Sighting sighting{frame.captured_at(), frame.camera(), robot.position_m};
+    const Sighting sighting{{frame.captured_at(), robot.position_m}, frame.camera()};
     compare(sightings, sighting);
     sightings.latest[sightings.next] = sighting;
     sightings.next = (sightings.next + 1) % sightings.latest.size();
@@ -47,18 +57,12 @@ void CameraOffsets::compare(const Sightings& robot, const Sighting& now) {
   const Sighting* before = nullptr;
   for (std::size_t age = 0; age < robot.count && !before; ++age)
     if (robot.back(age).camera == now.camera) before = &robot.back(age);
-  if (!before || before->captured_at >= now.captured_at ||
-      now.captured_at - before->captured_at > kMaxInterpolation)
-    return;
-  const double period_s = to_seconds(now.captured_at - before->captured_at);
+  if (!before) return;
   for (std::size_t age = 0; age < robot.count; ++age) {
     const Sighting& other = robot.back(age);
-    if (other.camera == now.camera || other.captured_at <= before->captured_at ||
-        other.captured_at > now.captured_at)
-      continue;
-    const double part = to_seconds(other.captured_at - before->captured_at) / period_s;
-    const Vec2 here_m = before->position_m + part * (now.position_m - before->position_m);
-    add_sample(now.camera, other.camera, other.position_m - here_m);
+    if (other.camera == now.camera || other.captured_at <= before->captured_at) continue;
+    if (const auto here_m = position_between(*before, now, other.captured_at))
+      add_sample(now.camera, other.camera, other.position_m - *here_m);
   }
 }
 

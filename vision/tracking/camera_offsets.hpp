@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,17 @@
 #include "vision/tracking/frame.hpp"
 
 namespace sidestep {
+
+/// Where a camera has seen a robot.
+struct CameraSighting {
+  Time captured_at{};
+  Vec2 position_m{0, 0};
+};
+
+/// Where the camera would have seen the robot at a time between two of its sightings. nullopt if the time is
+/// not between them, or if they are not in order or too far apart.
+[[nodiscard]] std::optional<Vec2> position_between(const CameraSighting& before, const CameraSighting& after,
+                                                   Time at);
 
 /// How far apart two cameras see the same robots.
 struct CameraDisagreement {
@@ -35,8 +47,6 @@ class CameraOffsets {
   static constexpr double kMinOffset_m = 0.003;
   /// Greater differences are not of one robot, or belong to cameras that must be calibrated.
   static constexpr double kMaxOffset_m = 0.15;
-  /// Frames of one camera that are further apart are not interpolated.
-  static constexpr Duration kMaxInterpolation{60'000'000};
   static constexpr double kMaxChange_mps = 0.01;  ///< maximum rate of change of a camera's correction
 
   explicit CameraOffsets(const std::vector<std::uint32_t>& cameras);
@@ -56,10 +66,8 @@ class CameraOffsets {
   void forget();
 
  private:
-  struct Sighting {
-    Time captured_at{};
+  struct Sighting : CameraSighting {
     std::uint32_t camera = 0;
-    Vec2 position_m{0, 0};
   };
   /// The latest sightings of a robot by all cameras, a ring buffer.
   struct Sightings {

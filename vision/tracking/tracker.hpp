@@ -48,6 +48,8 @@ class Tracker {
   /// The standard deviation of what cameras that disagree show. Observations of robots count as no more
   /// accurate than this. It adds to the uncertainty of obstacles.
   void set_camera_error(double position_error_m);
+  /// The standard deviation of a robot's observed position on each axis, by the settings.
+  double configured_noise_m() const { return configured_noise_m_; }
   /// Forgets all observations. Call when the clock was set back: later observations would seem older.
   void forget();
   /// Adds the counts of detections that were not used.

@@ -68,8 +68,8 @@ class VisionNode {
   Duration max_lead_;  // maximum lead of a frame's capture time
   Frame frame_;
   CameraOffsets offsets_;
-  CameraHandovers handovers_;
   Tracker tracker_;
+  CameraHandovers handovers_;
   CameraWatch watch_;
   msg::WorldState world_;
   msg::ObstacleList obstacles_;
