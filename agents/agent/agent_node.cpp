@@ -115,7 +115,7 @@ void AgentNode::on_world_state(const msg::WorldState& message) {
   // time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
   agent_.on_world_state(world, bus_.now() + clocks_.max_robot_offset(bus_.now()),
-                        clocks_.has_measured_robot());
+                        clocks_.is_robot_known(bus_.now()));
 }
 
 void AgentNode::on_obstacles(const msg::ObstacleList& message) {

@@ -32,7 +32,6 @@ void ClockMonitor::on_robot_report(const RobotReport& robot_report, Incarnation 
   }
   invalid_ += !robot_.add({command->sent_at, command->received_at, robot_report.valid_at, received});
   const auto known = robot_.at(received);
-  has_measured_robot_ |= known.has_value();
   if (known) robot_offset_ = known->nearest_to_zero();
 }
 

@@ -53,8 +53,9 @@ class ClockMonitor {
   /// Estimated offset of the robot's clock from the agent's, positive if the robot's clock is ahead: the
   /// offset closest to zero that is consistent with the measurements. It is zero for clocks that agree.
   Duration robot_offset() const { return robot_offset_; }
-  /// Whether the robot's clock has ever been measured.
-  bool has_measured_robot() const { return has_measured_robot_; }
+  /// Whether there is a recent measurement of the robot's clock. A robot that is silent may have restarted
+  /// with another time.
+  bool is_robot_known(Time now) const { return robot_.at(now, kMaxMeasurementAge).has_value(); }
   /// Upper bound of the offset between the robot's clock and the agent's; robot_offset() if there is no
   /// recent measurement.
   Duration max_robot_offset(Time now) const;
@@ -87,7 +88,6 @@ class ClockMonitor {
   std::array<CoordinatorClock, kMaxCoordinators> coordinators_;
   std::optional<std::size_t> coordinator_;  // the coordinator of epoch_; nullopt: it has not answered yet
   Epoch epoch_ = 0;
-  bool has_measured_robot_ = false;
   Duration robot_offset_{0};
   // Send times of the latest requests; echoes of other time stamps are ignored.
   std::array<Time, 64> requests_{};

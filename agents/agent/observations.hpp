@@ -25,7 +25,7 @@ class Observations {
   Observations(const FloorSpec& floor, const RobotSpec& robot, const FloorRules& rules);
 
   void on_robot_report(const RobotReport& robot_report);
-  /// Processes a world state. If the robot's clock has not been measured yet, the observation is only
+  /// Processes a world state. If there is no recent measurement of the robot's clock, the observation is only
   /// forwarded, because a robot that has lost its pose reports nothing until it gets a pose.
   void on_world_state(const WorldObservations& world, Time now, bool is_robot_clock_known);
   void on_obstacles(const ObstacleObservations& list, Time now) {

@@ -60,6 +60,21 @@ TEST_CASE(
   CHECK(system.metrics().report().contacts == 0);
 }
 
+TEST_CASE("an agent forwards vision to a robot that has lost its pose, even if its clock was wrong before") {
+  const double ahead_s = GENERATE(-4.0, 4.0);
+  CAPTURE(ahead_s);
+  Scenario scenario = circle_scenario(4);
+  scenario.robots[2].clock_offset = from_seconds(ahead_s);
+  SimSystem system(scenario, 1);
+  system.run_for(std::chrono::milliseconds(2500));
+  // The agent has measured the wrong clock. The robot restarts with the right one and without a pose, so it
+  // reports nothing.
+  system.disturb(disturbance(2, msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
+  system.disturb(disturbance(2, msg::DisturbanceKind::DISTURBANCE_CLOCK));
+  CHECK(system.run_until_arrived(system.now() + std::chrono::seconds(20)));
+  CHECK(system.metrics().report().contacts == 0);
+}
+
 TEST_CASE("agents drive their robots although their hosts' clocks are wrong") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
