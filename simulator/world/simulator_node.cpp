@@ -25,6 +25,9 @@ constexpr Duration kFrameExpiry = milliseconds(200);
 constexpr Duration kMaxTimerAhead = milliseconds(200);
 // A body that is slower than this is at rest.
 constexpr double kRestingBody_mps = 0.02;
+// Before the node finishes, robots rest for this long and for the cameras' delay, so that ground truth and
+// detections show them at rest.
+constexpr Duration kShownRest = 3 * kTruthPeriod;
 
 }  // namespace
 
@@ -37,7 +40,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
       field_(scenario.field),
       radius_m_(scenario.radius_m),
       incarnation_(incarnation),
-      max_stopping_time_(2 * time_to_rest(scenario.limits)),
+      max_stopping_time_(2 * time_to_rest(scenario.limits) + kShownRest + scenario.vision.delay),
       clock_(bus.now()),
       world_(scenario, bus.now(), seed),
       cameras_(scenario, bus.now(), Rng(seed + 1).bits()),
@@ -165,8 +168,14 @@ bool SimulatorNode::is_commanded() const {
 }
 
 bool SimulatorNode::come_to_rest() {
-  if (!stopping_since_) stopping_since_ = bus_.now();
-  return moving_robots().empty() || bus_.now() - *stopping_since_ >= max_stopping_time_;
+  const Time now = bus_.now();
+  if (!stopping_since_) stopping_since_ = now;
+  if (!moving_robots().empty())
+    resting_since_.reset();
+  else if (!resting_since_)
+    resting_since_ = now;
+  return (resting_since_ && now - *resting_since_ >= kShownRest + delay_) ||
+         now - *stopping_since_ >= max_stopping_time_;
 }
 
 std::vector<RobotId> SimulatorNode::moving_robots() {

@@ -45,8 +45,8 @@ class SimulatorNode {
   /// Whether any robot obeys an agent. A restart of this process would make the robot forget the agent.
   bool is_commanded() const;
 
-  /// Accepts no more versions, so all robots come to rest. Returns whether all rest, or have had twice the
-  /// time that they need.
+  /// Accepts no more versions, so all robots come to rest. Returns whether all rest and have been shown at
+  /// rest, or have had twice the time that they need.
   [[nodiscard]] bool come_to_rest();
   /// The robots that move, or have a version that will move them.
   std::vector<RobotId> moving_robots();
@@ -96,7 +96,7 @@ class SimulatorNode {
   double radius_m_;
   Incarnation incarnation_;
   Duration max_stopping_time_;
-  std::optional<Time> stopping_since_;  // by the bus's clock
+  std::optional<Time> stopping_since_, resting_since_;  // by the bus's clock
   Time clock_;
   World world_;
   EventReporter events_;

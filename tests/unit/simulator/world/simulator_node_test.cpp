@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/world/simulator_node.hpp"
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <vector>
@@ -164,7 +165,7 @@ TEST_CASE("a robot decides by its own clock on arrival whether a command is late
   CHECK(scene.robot_reports[0].back().executing().version_number() == 0);
 }
 
-TEST_CASE("a simulator that is asked to end accepts no more versions and ends when all robots rest") {
+TEST_CASE("a simulator that is asked to end accepts no more versions and ends when all are shown at rest") {
   Scene scene(separated_robots(2));
   scene.run(milliseconds(50));
   const auto drive = [&](VersionNumber number, VersionNumber base, const State& from, Time start) {
@@ -185,6 +186,9 @@ TEST_CASE("a simulator that is asked to end accepts no more versions and ends wh
     REQUIRE(scene.network.now() < first.trajectory.end() + milliseconds(500));
     scene.run(milliseconds(1));
   }
+  const msg::TrueRobotState& shown = scene.truths.back().robots().at(1);
+  CHECK(std::hypot(shown.vx_mps(), shown.vy_mps()) < 0.02);
+  CHECK(scene.frames.back().captured_at_ns() > to_ns(first.trajectory.end()));
   CHECK(scene.network.now() >= first.trajectory.end());
   CHECK(scene.node.moving_robots().empty());
   CHECK(scene.node.world().firmware(1).executing().number == 1);
