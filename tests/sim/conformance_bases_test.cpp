@@ -8,6 +8,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/motion/safety_budget.hpp"
 #include "deploy/trial/conformance/conformance.hpp"
+#include "deploy/trial/simulate/campaign/base_sampler.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/driven_fleet.hpp"
 
@@ -29,13 +30,8 @@ struct SampledBase {
 SampledBase sample_base(std::uint64_t seed) {
   Rng rng(seed);
   SampledBase sampled;
-  sampled.base.latency = from_seconds(rng.uniform(0.020, 0.150));
+  sampled.base = sample_base(rng, 20ms, 150ms);
   sampled.noise_m = rng.uniform(0.0003, 0.003);
-  sampled.base.drag_per_s = rng.uniform(0, 1);
-  sampled.base.max_turn_radps = std::pow(10, rng.uniform(0, 1.3));
-  sampled.base.braking_mps2 = rng.uniform(5.2, 8);
-  sampled.base.silence_timeout = from_seconds(rng.chance(0.3) ? 1 : rng.uniform(0.05, 0.3));
-  sampled.base.coast = from_seconds(rng.chance(0.5) ? 0 : rng.uniform(0, 1.2));
   return sampled;
 }
 

@@ -50,7 +50,7 @@ class FencedFloor {
   FencedFloor(std::uint64_t seed, Duration latency)
       : scenario_(shuttles()),
         network_(seed, kBegin, scenario_.network),
-        floor_(network_, scenario_, bases_with_latency(latency), latency, seed),
+        floor_(network_, scenario_, bases_with_latency(latency).floor.bases, latency, seed),
         coordinator_(coordinator_bus_, scenario_, {0, static_cast<Incarnation>(to_ns(kBegin))}, false),
         scratch_(std::make_shared<PlanningScratch>(scenario_)) {
     observer_.become_observer();

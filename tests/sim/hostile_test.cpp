@@ -39,7 +39,7 @@ TEST_CASE("a hostile message of any kind does not keep a robot that has lost its
   scenario.margin_m = 0.032;
   for (const Forgery& forgery : forgeries()) {
     CAPTURE(forgery.name);
-    SimSystem system(scenario, 1, {}, SimSystem::kBegin, 100ms);
+    SimSystem system(scenario, 1, {}, SimSystem::kBegin, bases_with_latency(100ms));
     Forger forger(system.network(), scenario, kVictim);
     system.run_for(2s);
     // Long enough for robots to lose their poses and for processes to accept another sender.

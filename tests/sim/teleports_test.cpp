@@ -22,8 +22,8 @@ Scenario random_floor(Rng& rng) {
   Scenario scenario;
   scenario.name = "teleports";
   scenario.field = {4.5, 3.5};
-  scenario.tracking_bound_m = 0.014;
-  scenario.margin_m = 0.032;
+  scenario.tracking_bound_m = 0.032;
+  scenario.margin_m = 0.068;
   scenario.vision.position_noise_m = 0.0015;
   scenario.vision.miss_probability = 0.02;
   test::PositionSampler starts{rng, scenario.field, {}};
@@ -45,7 +45,8 @@ class TeleportRun {
   TeleportRun(std::uint64_t seed, Kind kind)
       : rng_(seed),
         scenario_(random_floor(rng_)),
-        system_(scenario_, seed, {}, SimSystem::kBegin, milliseconds(18 + rng_.below(120))) {
+        system_(scenario_, seed, {}, SimSystem::kBegin,
+                bases_with_latency(milliseconds(18 + rng_.below(120)))) {
     system_.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       for (const msg::TrueRobotState& robot : truth.robots())
         bodies_[robot.robot()] = {{robot.x_m(), robot.y_m()}, {robot.vx_mps(), robot.vy_mps()}};
@@ -142,7 +143,7 @@ TEST_CASE("a robot that is put elsewhere while it drives brakes after two fixes,
   robot.start_m = {-4, 0};
   robot.goals = {{Vec2(4, 0), std::nullopt}};
   scenario.robots = {robot};
-  SimSystem system(scenario, 1, {}, SimSystem::kBegin, milliseconds(40));
+  SimSystem system(scenario, 1, {}, SimSystem::kBegin, bases_with_latency(milliseconds(40)));
   State body;
   system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) {
     if (truth.robots().empty()) return;
@@ -185,7 +186,7 @@ TEST_CASE("the inflation of robots without orders ends where they have been put"
     robot.start_m = {-2, -0.9 + 0.6 * id};
     scenario.robots.push_back(robot);
   }
-  SimSystem system(scenario, 1, {}, SimSystem::kBegin, milliseconds(40));
+  SimSystem system(scenario, 1, {}, SimSystem::kBegin, bases_with_latency(milliseconds(40)));
   SimBus observer(system.network());
   observer.become_observer();
   std::map<RobotId, double> inflations_m;

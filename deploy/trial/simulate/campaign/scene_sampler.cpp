@@ -8,6 +8,7 @@
 
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_check.hpp"
+#include "deploy/trial/simulate/campaign/base_sampler.hpp"
 #include "deploy/trial/simulate/campaign/building_sampler.hpp"
 #include "deploy/trial/simulate/campaign/position_sampler.hpp"
 #include "deploy/trial/simulate/campaign/walk_sampler.hpp"
@@ -121,29 +122,17 @@ void sample_people(Scenario& scenario, double min_radius_m, double max_radius_m,
   }
 }
 
-/// Bases follow their versions less exactly than firmware does. The values are from league/crossing.yaml.
-void configure_bases(Scenario& scenario) {
-  scenario.tracking_bound_m = 0.014;
-  scenario.margin_m = 0.032;
-  scenario.vision.position_noise_m = 0.0015;
-}
-
 }  // namespace
 
-std::optional<Duration> sample_base_latency(Rng& rng) {
-  if (!rng.chance(0.15)) return std::nullopt;
-  return from_seconds(rng.uniform(0.018, 0.3));
-}
-
-Scenario sample_scene(Rng& rng, bool has_driven_bases) {
+Scenario sample_scene(Rng& rng, const std::optional<DrivenBaseSettings>& bases) {
   Scenario scenario;
   scenario.name = "random";
   constexpr std::size_t kMost = 30, kMaxDrivenBases = 16;  // a team has 16 numbers
-  const std::size_t robots = 5 + rng.below((has_driven_bases ? kMaxDrivenBases : kMost) - 4);
-  if (has_driven_bases) configure_bases(scenario);
+  const std::size_t robots = 5 + rng.below((bases ? kMaxDrivenBases : kMost) - 4);
+  if (bases) prepare_for(scenario, *bases);
   sample_floor(scenario, robots, rng);
   sample_sensors(scenario, rng);
-  if (has_driven_bases) scenario.command_loss = 0;  // only firmware loses commands
+  if (bases) scenario.command_loss = 0;  // only firmware loses commands
   scenario.robots.resize(robots);
   std::vector<RobotLines> lines(robots);
   for (std::size_t i = 0; i < robots; ++i) {

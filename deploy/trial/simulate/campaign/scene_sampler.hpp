@@ -6,17 +6,14 @@
 
 #include "common/config/scenario.hpp"
 #include "common/random/rng.hpp"
+#include "deploy/trial/simulate/system/driven_bases.hpp"
 
 namespace sidestep {
 
-/// The latency with which robots obey, in scenes where they are driven bases; nullopt in scenes where they
-/// have firmware.
-std::optional<Duration> sample_base_latency(Rng& rng);
-
-/// Samples a scene with 5 to 30 robots (at most 16 if they are driven bases), dense enough that they interact
-/// (0.5 to 3 m² each), up to five obstacles, and enough goals per robot that none reaches its last one within
-/// a few minutes.
-Scenario sample_scene(Rng& rng, bool has_driven_bases = false);
+/// Samples a scene with 5 to 30 robots (at most 16 if they are such driven bases), dense enough that they
+/// interact (0.5 to 3 m² each), up to five obstacles, and enough goals per robot that none reaches its last
+/// one within a few minutes.
+Scenario sample_scene(Rng& rng, const std::optional<DrivenBaseSettings>& bases = std::nullopt);
 
 /// A description of the scene in one line.
 std::string scene_summary(const Scenario& scenario);

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <iterator>
 
+#include "deploy/trial/simulate/campaign/base_sampler.hpp"
 #include "deploy/trial/simulate/campaign/clock_sampler.hpp"
 #include "deploy/trial/simulate/campaign/distance_meter.hpp"
 #include "deploy/trial/simulate/campaign/disturbance_sampler.hpp"
@@ -145,14 +146,12 @@ void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress
 
 std::set<std::string> Trial::fault_kinds() const {
   std::set<std::string> kinds = sidestep::fault_kinds(scenario, plan);
-  if (base_latency) kinds.insert("robots with lead");
+  if (bases) kinds.merge(sidestep::fault_kinds(*bases));
   return kinds;
 }
 
 std::string Trial::summary() const {
-  if (!base_latency) return scene_summary(scenario);
-  return fmt::format("driven bases that obey after {:.0f} ms; {}", 1e3 * to_seconds(*base_latency),
-                     scene_summary(scenario));
+  return bases ? to_text(*bases) + "; " + scene_summary(scenario) : scene_summary(scenario);
 }
 
 Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario,
@@ -165,12 +164,12 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   if (scenario) {
     trial.scenario = *scenario;
   } else {
-    trial.base_latency = sample_base_latency(base_rng);
-    trial.scenario = sample_scene(scene_rng, trial.base_latency.has_value());
+    trial.bases = sample_driven_bases(base_rng);
+    trial.scenario = sample_scene(scene_rng, trial.bases);
     sample_planners(trial.scenario, planner_rng);
   }
   // The simulator of bases has neither people nor lasers.
-  if (!scenario && !trial.base_latency) {
+  if (!scenario && !trial.bases) {
     sample_opponents(trial.scenario, opponent_rng);
     sample_lasers(trial.scenario, laser_rng);
   }
@@ -179,13 +178,13 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   plan.healed_at = times.healed_at();
   if (!has_faults) return trial;
   plan = sample_faults(trial.scenario, system_process_names(trial.scenario), times, fault_rng);
-  if (trial.base_latency) remove_driver_pauses(plan);
-  sample_clocks(trial.scenario, plan, duration, !trial.base_latency, clock_rng);
+  if (trial.bases) remove_driver_pauses(plan);
+  sample_clocks(trial.scenario, plan, duration, !trial.bases, clock_rng);
   if (disturbance_rng.chance(0.08)) trial.scenario.vision.ghost_probability = disturbance_rng.uniform(0, 0.2);
   if (disturbance_rng.chance(0.08))
     trial.scenario.vision.ghost_obstacle_probability = disturbance_rng.uniform(0, kMaxGhostObstacles);
   // Only robots with firmware have these disturbances.
-  if (!trial.base_latency) sample_disturbances(trial.scenario, times, plan, disturbance_rng);
+  if (!trial.bases) sample_disturbances(trial.scenario, times, plan, disturbance_rng);
   sample_reception(trial.scenario, times, plan, reception_rng);
   sample_clock_jumps(trial.scenario, times, plan, clock_jump_rng);
   sample_orders(trial.scenario, times, plan, order_rng);
@@ -200,7 +199,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   result.robots = static_cast<int>(trial.scenario.robots.size());
   result.fault_kinds = trial.fault_kinds();
   result.robot_s = result.robots * to_seconds(trial.duration);
-  SimSystem system(trial.scenario, trial.seed, trial.plan.clocks, SimSystem::kBegin, trial.base_latency);
+  SimSystem system(trial.scenario, trial.seed, trial.plan.clocks, SimSystem::kBegin, trial.bases);
   DistanceMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecoveryTime, trial.duration));
   system.observer_bus().subscribe(topics::kTruth, [&](const msg::GroundTruth& truth) { meter.add(truth); });
   const SentMessages sent(system.observer_bus(), trial.scenario);

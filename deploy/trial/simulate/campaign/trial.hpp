@@ -32,7 +32,7 @@ struct Trial {
   Scenario scenario;
   FaultPlan plan;
   Duration duration{0};
-  std::optional<Duration> base_latency = std::nullopt;  ///< set if robots are driven bases; see SimSystem
+  std::optional<DrivenBaseSettings> bases = std::nullopt;  ///< set if robots are driven bases
 
   std::set<std::string> fault_kinds() const;
   /// A description in one line, without the faults.

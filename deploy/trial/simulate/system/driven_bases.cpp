@@ -12,6 +12,12 @@ std::size_t base_of(const BaseWorld& world, const Scenario& scenario, RobotId ro
   return *world.find(find_robot(scenario, robot)->team, number_in_team(robot));
 }
 
+DriveSettings drive_settings_for(const Scenario& scenario, const DrivenBaseSettings& bases) {
+  DriveSettings settings = drive_settings(scenario, bases.latency);
+  settings.turn_radps = bases.turn_radps;
+  return settings;
+}
+
 }  // namespace
 
 void DirectDriver::send(std::span<const BaseCommand> commands) {
@@ -22,21 +28,20 @@ void DirectDriver::send(std::span<const BaseCommand> commands) {
   }
 }
 
-BaseSettings bases_with_latency(Duration latency) {
-  // The motors need this long to reach a commanded velocity.
-  constexpr Duration kResponse = std::chrono::milliseconds(18);
-  BaseSettings bases;
-  bases.latency = std::max<Duration>(latency - kResponse, Duration{0});
+DrivenBaseSettings bases_with_latency(Duration latency) {
+  DrivenBaseSettings bases;
+  bases.floor.bases.latency = std::max<Duration>(latency - kMotorResponse, Duration{0});
+  bases.latency = latency;
   return bases;
 }
 
-DrivenBases::DrivenBases(Bus& bus, const Scenario& scenario, Duration latency, Incarnation incarnation,
-                         std::uint64_t seed)
+DrivenBases::DrivenBases(Bus& bus, const Scenario& scenario, const DrivenBaseSettings& settings,
+                         Incarnation incarnation, std::uint64_t seed)
     : scenario_(scenario),
-      bases_(bus, scenario, {.bases = bases_with_latency(latency)}, incarnation, seed),
+      bases_(bus, scenario, settings.floor, incarnation, seed),
       driver_(bases_, scenario),
-      robots_(bus, scenario, roster_of(scenario), incarnation, drive_settings(scenario, latency), driver_,
-              memory_.path()) {}
+      robots_(bus, scenario, roster_of(scenario), incarnation, drive_settings_for(scenario, settings),
+              driver_, memory_.path()) {}
 
 void DrivenBases::place(RobotId robot, const Vec2& position_m, double heading_rad) {
   BaseWorld& world = bases_.world_now();

@@ -20,16 +20,26 @@ class DirectDriver : public Driver {
   const Scenario scenario_;
 };
 
-/// Settings of a base that reaches its commanded velocity this long after the command, as far as its
-/// acceleration permits.
-BaseSettings bases_with_latency(Duration latency);
+/// The motors of simulated bases need about this long to reach a commanded velocity.
+inline constexpr Duration kMotorResponse = std::chrono::milliseconds(18);
+
+/// Bases, and what the process that drives them is told about them.
+struct DrivenBaseSettings {
+  BaseFloorSettings floor{};
+  Duration latency = DriveSettings{}.latency;
+  double turn_radps = DriveSettings{}.turn_radps;
+};
+
+/// Bases that reach their commanded velocity this long after the command, as far as their acceleration
+/// permits, driven with that latency.
+DrivenBaseSettings bases_with_latency(Duration latency);
 
 /// Robots without firmware, in one process with the code that sidestep-robot runs for them: they obey their
 /// commands after a latency. Their memory ends with the process.
 class DrivenBases {
  public:
   /// The bus must make no callback after the destruction.
-  DrivenBases(Bus& bus, const Scenario& scenario, Duration latency, Incarnation incarnation,
+  DrivenBases(Bus& bus, const Scenario& scenario, const DrivenBaseSettings& settings, Incarnation incarnation,
               std::uint64_t seed);
 
   /// Puts a base elsewhere, at rest; neither the robot nor its odometry notices it.

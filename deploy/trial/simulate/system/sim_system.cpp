@@ -86,13 +86,13 @@ struct SimSystem::Process {
 };
 
 SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks,
-                     Time begin, std::optional<Duration> base_latency)
+                     Time begin, const std::optional<DrivenBaseSettings>& bases)
     : scenario_(scenario),
       seed_(seed),
       rng_(seed),
       clocks_(std::move(clocks)),
       begin_(begin),
-      base_latency_(base_latency),
+      bases_(bases),
       scratch_(std::make_shared<PlanningScratch>(scenario_)),
       network_(seed, begin, scenario.network),
       metrics_(scenario_),
@@ -155,8 +155,8 @@ void SimSystem::start(const std::string& name) {
   if (agent != robot_of_.end()) {
     const auto scratch = &scenario == &scenario_ ? scratch_ : std::make_shared<PlanningScratch>(scenario);
     process->run(std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch));
-  } else if (first_process(name) == "simulator" && base_latency_) {
-    auto bases = std::make_shared<DrivenBases>(bus, scenario, *base_latency_, incarnation, seed_);
+  } else if (first_process(name) == "simulator" && bases_) {
+    auto bases = std::make_shared<DrivenBases>(bus, scenario, *bases_, incarnation, seed_);
     process->bases = bases.get();
     process->run(std::move(bases));
   } else if (first_process(name) == "simulator") {

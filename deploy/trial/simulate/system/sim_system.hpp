@@ -17,6 +17,7 @@
 #include "common/protocol/process_names.hpp"
 #include "deploy/audit/auditor.hpp"
 #include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/trial/simulate/system/driven_bases.hpp"
 #include "deploy/trial/simulate/system/system_processes.hpp"
 
 namespace sidestep {
@@ -30,10 +31,10 @@ class SimSystem {
  public:
   static constexpr Time kBegin = time_from_ns(1'000'000'000'000);
   /// Starts all processes at this virtual time. `clocks` contains the errors of processes' clocks, which
-  /// apply to all their incarnations. If `base_latency` is set, robots are driven bases that obey after that
-  /// latency and use the simulator's clock (DrivenBases); otherwise they have firmware.
+  /// apply to all their incarnations. If `bases` is set, robots are such driven bases and use the simulator's
+  /// clock (DrivenBases); otherwise they have firmware.
   SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks = {},
-            Time begin = kBegin, std::optional<Duration> base_latency = std::nullopt);
+            Time begin = kBegin, const std::optional<DrivenBaseSettings>& bases = std::nullopt);
   ~SimSystem();
   SimSystem(const SimSystem&) = delete;
   SimSystem& operator=(const SimSystem&) = delete;
@@ -68,8 +69,8 @@ class SimSystem {
     disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     disturbance_writer_.publish(disturbance, now());
   }
-  /// Puts a driven base elsewhere, at rest, as a simulator's operator does. Precondition: `base_latency` was
-  /// set, and the simulator is alive.
+  /// Puts a driven base elsewhere, at rest, as a simulator's operator does. Precondition: robots are driven
+  /// bases, and the simulator is alive.
   void place(RobotId robot, const Vec2& position_m, double heading_rad);
   /// Publishes a client's order.
   void send(const Order& order);
@@ -108,7 +109,7 @@ class SimSystem {
   std::map<std::string, ClockError> clocks_;
   std::map<std::string, Scenario> scenarios_;  // scenarios of processes that use a different one
   Time begin_;
-  std::optional<Duration> base_latency_;
+  std::optional<DrivenBaseSettings> bases_;
   std::shared_ptr<PlanningScratch> scratch_;  // shared by all agents
   SimNetwork network_;
   RunMetrics metrics_;

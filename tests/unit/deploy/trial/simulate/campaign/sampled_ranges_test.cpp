@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/config/scenario_loader.hpp"
+#include "deploy/trial/simulate/campaign/base_sampler.hpp"
 #include "deploy/trial/simulate/campaign/clock_sampler.hpp"
 #include "deploy/trial/simulate/campaign/disturbance_sampler.hpp"
 #include "deploy/trial/simulate/campaign/fault_sampler.hpp"
@@ -217,7 +218,15 @@ TEST_CASE("random scenes, sensors and lasers fill their ranges") {
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     Rng rng(seed);
     for (int i = 0; i < 5; ++i) {
-      if (const auto latency = sample_base_latency(rng)) sizes.add("latency of bases", *latency);
+      const auto bases = sample_driven_bases(rng);
+      if (!bases) continue;
+      const BaseFloorSettings& floor = bases->floor;
+      sizes.add("latency of bases", bases->latency);
+      sizes.add("drag", floor.bases.drag_per_s);
+      sizes.add("turning", floor.bases.max_turn_radps);
+      if (floor.pace.speeds.size() > 1) sizes.add("pace", floor.pace.speeds.front());
+      if (floor.pace.step > Duration{0}) sizes.add("step", floor.pace.step);
+      if (floor.camera_error_m > 0) sizes.add("camera error", floor.camera_error_m);
     }
     Scenario scenario = sample_scene(rng);
     const auto robots = static_cast<double>(scenario.robots.size());
@@ -249,7 +258,12 @@ TEST_CASE("random scenes, sensors and lasers fill their ranges") {
         sizes.add("places of a person", static_cast<double>(person.path_m.size()));
     }
   }
-  sizes.check("latency of bases", 0.018, 0.3);
+  sizes.check("latency of bases", 0.01, 0.29);
+  sizes.check("drag", 0, 1);
+  sizes.check_log("turning", 1, 20);
+  sizes.check("pace", 0.5, 1.02);
+  sizes.check("step", 0.005, 0.02);
+  sizes.check("camera error", 0, 0.02);
   sizes.check("robots", 5, 30);
   sizes.check("aspect", 1, 2);
   sizes.check_log("area", 0.5, 3);
