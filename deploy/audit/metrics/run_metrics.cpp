@@ -124,6 +124,11 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
 
   const Time at = time_from_ns(truth.valid_at_ns());
   truth_at_ = at;
+  for (RobotRecord& robot : robots_) {
+    // Ground truth shows every robot on the floor.
+    const auto is_robot = [&](const msg::TrueRobotState& state) { return state.robot() == robot.spec->id; };
+    if (std::ranges::none_of(truth.robots(), is_robot)) robot.sighting.reset();
+  }
   for (const msg::TrueRobotState& state : truth.robots()) {
     RobotRecord* robot = find(state.robot());
     if (!robot || !is_sane(state)) {

@@ -613,4 +613,16 @@ TEST_CASE("sightings are the latest places of robots that were seen, by ground t
   CHECK(metrics.sightings()[0].robot == 7);
 }
 
+TEST_CASE("a robot that ground truth does not show has no sighting, because it is off the floor") {
+  RunMetrics metrics(kTwo);
+  metrics.on_truth(truth(1, 1, {body(3, 0.5, 0, 1.5), body(7, 0.75, 1)}));
+  REQUIRE(metrics.sightings().size() == 2);
+  metrics.on_truth(truth(2, 1.1, {body(7, 0.75, 1)}));
+  REQUIRE(metrics.sightings().size() == 1);
+  CHECK(metrics.sightings()[0].robot == 7);
+  metrics.on_truth(truth(3, 1.2, {body(3, 0.4, 0), body(7, 0.75, 1)}));
+  REQUIRE(metrics.sightings().size() == 2);
+  CHECK(metrics.sightings()[0].position_m == Vec2(0.4, 0));
+}
+
 }  // namespace sidestep::run_metrics_test
