@@ -124,14 +124,11 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
 
   const Time at = time_from_ns(truth.valid_at_ns());
   truth_at_ = at;
-  for (RobotRecord& robot : robots_) {
-    // Ground truth shows every robot on the floor.
-    const auto is_robot = [&](const msg::TrueRobotState& state) { return state.robot() == robot.spec->id; };
-    if (std::ranges::none_of(truth.robots(), is_robot)) robot.sighting.reset();
-  }
+  std::vector<const RobotRecord*> unsound;  // on the floor, but nobody knows where
   for (const msg::TrueRobotState& state : truth.robots()) {
     RobotRecord* robot = find(state.robot());
     if (!robot || !is_sane(state)) {
+      if (robot) unsound.push_back(robot);
       ++dropped_messages_;
       continue;
     }
@@ -140,6 +137,11 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
     const double speed_mps = std::hypot(state.vx_mps(), state.vy_mps());
     place(*robot, position_m, speed_mps, {scenario_.goal_tolerance_m, kAtRest_mps}, at);
     robot->sighting = {state.robot(), at, position_m, speed_mps};
+  }
+  // Ground truth shows every robot on the floor.
+  for (RobotRecord& robot : robots_) {
+    const bool is_shown = robot.sighting && robot.sighting->at == at;
+    if (!is_shown && std::ranges::find(unsound, &robot) == unsound.end()) robot.sighting.reset();
   }
   floor_.on_truth(truth);
 }

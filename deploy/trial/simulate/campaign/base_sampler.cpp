@@ -5,14 +5,12 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "common/motion/safety_budget.hpp"
-
 namespace sidestep {
 namespace {
 
 using std::chrono::milliseconds;
 
-// Robots state no longer lead; see coordinator/PROTOCOL.md.
+// A robot's lead is at most 0.3 s (coordinator/PROTOCOL.md).
 constexpr double kMaxLatency_s = 0.29;
 
 double slowest(const PaceSettings& pace) { return std::min(1.0, std::ranges::min(pace.speeds)); }
@@ -66,8 +64,7 @@ void prepare_for(Scenario& scenario, const DrivenBaseSettings& bases) {
   scenario.odometry.scale_error = std::max(scenario.odometry.scale_error, 0.4 * (1 / slow - 1));
   scenario.vision.position_noise_m = 0.0015;
   scenario.tracking_bound_m = 0.04;
-  const SafetyBudget budget{scenario.tracking_bound_m, scenario.clock_bound_s, scenario.limits.speed_mps};
-  scenario.margin_m = std::ceil(budget.required_margin_m() * 1e3 - 1e-6) * 1e-3;
+  scenario.margin_m = budget_of(scenario).required_margin_m();
 }
 
 std::set<std::string> fault_kinds(const DrivenBaseSettings& bases) {

@@ -623,6 +623,10 @@ TEST_CASE("a robot that ground truth does not show has no sighting, because it i
   metrics.on_truth(truth(3, 1.2, {body(3, 0.4, 0), body(7, 0.75, 1)}));
   REQUIRE(metrics.sightings().size() == 2);
   CHECK(metrics.sightings()[0].position_m == Vec2(0.4, 0));
+  // A robot whose state is invalid is on the floor.
+  metrics.on_truth(truth(4, 1.3, {body(3, std::nan(""), 0), body(7, 0.75, 1)}));
+  REQUIRE(metrics.sightings().size() == 2);
+  CHECK(metrics.sightings()[0].at == after(1.2));
 }
 
 }  // namespace sidestep::run_metrics_test
