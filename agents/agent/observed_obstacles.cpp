@@ -42,7 +42,8 @@ void ObservedObstacles::on_list(const ObstacleObservations& list, const Vec2& ro
     if (observed.observed_at < now - kMaxObservationAge) continue;
     const double radius_m = observed.radius_m + kObstacleSigmas * std::sqrt(observed.position_variance_m2);
     store({list.vision, observed.track},
-          {observed.position_m, radius_m, observed.observed_at - max_clock_difference_, max_speed_mps_},
+          {observed.position_m, radius_m, observed.observed_at - max_clock_difference_, max_speed_mps_,
+           observed.velocity_mps},
           robot_m, now);
   }
   if (is_whole && now >= incomplete_until_) completeness_.on_list(list);

@@ -27,11 +27,8 @@ bool is_possible(const msg::ObstacleList& message) {
 }
 
 ObservedObstacle obstacle_from(const msg::TrackedObstacle& message) {
-  return {message.obstacle(),
-          time_from_ns(message.observed_at_ns()),
-          {message.x_m(), message.y_m()},
-          message.radius_m(),
-          message.position_variance_m2()};
+  return {message.obstacle(), time_from_ns(message.observed_at_ns()), {message.x_m(), message.y_m()},
+          message.radius_m(), message.position_variance_m2(),         {message.vx_mps(), message.vy_mps()}};
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct ObservedObstacle {
   Vec2 position_m{0, 0};
   double radius_m = 0;
   double position_variance_m2 = 0;  ///< variance on each axis
+  Vec2 velocity_mps{0, 0};          ///< as sent: not checked, not even for NaN
 };
 
 /// A list of obstacles. All numbers are within bounds, but times may be arbitrary.

@@ -14,8 +14,12 @@ namespace {
 /// A robot at rest for longer than this counts as an obstacle.
 constexpr Duration kStationaryAfter{500'000'000};
 constexpr std::size_t kMaxStationary = 8;  ///< number of nearest stationary robots that are considered
-constexpr std::size_t kMaxMoving = 4;      ///< number of nearest moving obstacles that are considered
-constexpr double kMovingRange_m = 1.5;     ///< moving obstacles farther away are ignored
+constexpr std::size_t kMaxMoving = 8;      ///< number of nearest moving obstacles that are considered
+/// An obstacle that moves and is farther away is ignored: it will be elsewhere by the time the robot gets
+/// there. One that stands is not. A robot that saw it only from some places of its way would choose one route
+/// at these places and another one elsewhere, and could turn around between them for ever.
+constexpr double kMovingRange_m = 1.5;
+constexpr double kStanding_mps = 0.3;  ///< an obstacle whose estimated speed is lower counts as standing
 /// Positions and radii of moving obstacles are rounded to this grid to avoid replanning in every cycle.
 constexpr double kMovingGrid_m = 0.05;
 // A lag changes when an obstacle was observed, which routes do not depend on.
@@ -63,7 +67,8 @@ std::vector<Circle> RouteSurroundings::find_moving(const Vec2& target, Time now,
   const Vec2& position = observations.own().estimate().position_m;
   std::vector<Circle> found;
   const auto add = [&](const MovingObstacle& obstacle) {
-    if ((obstacle.position_m - position).norm() > kMovingRange_m) return;
+    const bool stands = obstacle.velocity_mps.norm() < kStanding_mps;
+    if (!stands && (obstacle.position_m - position).norm() > kMovingRange_m) return;
     const Vec2 centre = (obstacle.position_m / kMovingGrid_m).array().round().matrix() * kMovingGrid_m;
     const double radius = std::round(obstacle.radius_m / kMovingGrid_m) * kMovingGrid_m;
     // The inflated circle must not cover the target.
@@ -77,7 +82,7 @@ std::vector<Circle> RouteSurroundings::find_moving(const Vec2& target, Time now,
     // near people. If people are in the way, the robot waits rather than squeezing past along a wall.
     const double less_m = kClearancesInSight_m.front() - kExtraClearance_m;
     for (const LaserTrack& track : laser->sight().tracks())
-      add({track.position_m, std::max(0.05, track.radius_m - less_m), track.seen_at, 0});
+      add({track.position_m, std::max(0.05, track.radius_m - less_m), track.seen_at, 0, track.velocity_mps});
   } else {
     for (const MovingObstacle& obstacle : observations.obstacles().recent(now, kNoLag)) add(obstacle);
   }
