@@ -88,7 +88,10 @@ std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& t
                    query.observations.own().estimate().position_m, query.now},
                   temporary, query.rng);
   if (!route) return std::nullopt;
-  if (!gives_way) update_blockage(*route, query.now);
+  if (!gives_way)
+    update_blockage(*route, query.now);
+  else if (const std::optional<Blockage> other = passage_.blockage())
+    blockage_.on_blocked(*other, query.now);
   passage_.on_route(*route);
   const bool is_as_near_as_possible = !route->reaches_goal && will_rest_at(query.base, route->end_m);
   return is_as_near_as_possible ? std::nullopt : route;

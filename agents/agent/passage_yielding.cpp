@@ -40,6 +40,12 @@ void PassageYielding::on_route(const Route& route) {
   remaining_to_goal_m_ = leads_to_goal ? route.length_m : std::numeric_limits<double>::infinity();
 }
 
+std::optional<Blockage> PassageYielding::blockage() const {
+  const auto other = give_way_.waits_for();
+  if (!other) return std::nullopt;
+  return Blockage{msg::BlockReason::BLOCK_PASSING_ROBOT, other->first, other->second, *place_m()};
+}
+
 std::vector<OtherRobot> PassageYielding::others_in_passages(Time now, Observations& observations,
                                                             const Assignment& assignment) const {
   std::vector<OtherRobot> others;

@@ -29,6 +29,8 @@ class PassageYielding {
 
   /// The place where the robot should go instead of its goal; nullopt if it should go to its goal.
   std::optional<Vec2> place_m() const { return give_way_.place_m(); }
+  /// The robot for which this robot waits at that place; nullopt if it does not give way.
+  std::optional<Blockage> blockage() const;
 
  private:
   /// The robots to which this robot may have to give way.

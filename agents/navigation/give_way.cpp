@@ -40,6 +40,13 @@ void GiveWay::restart(Time now) {
   range_m_ = kFirstRange_m;
 }
 
+std::optional<std::pair<RobotId, Vec2>> GiveWay::waits_for() const {
+  if (way_.empty() || yields_to_.empty()) return std::nullopt;
+  const auto trip = trips_.find(yields_to_.front());
+  if (trip == trips_.end()) return std::nullopt;
+  return std::pair(trip->first, trip->second.first);
+}
+
 bool GiveWay::track_progress(Time now, double remaining_m) {
   const bool is_new = now - called_at_ > kMaxPause || now < progress_at_;
   called_at_ = now;

@@ -55,6 +55,9 @@ class GiveWay {
   /// The robots that must pass before the robot may leave its place. A robot that is still far away has not
   /// passed.
   std::span<const RobotId> yields_to() const { return yields_to_; }
+  /// The first of these robots, and where it was when the robot began to give way or last looked; nullopt if
+  /// the robot does not give way.
+  std::optional<std::pair<RobotId, Vec2>> waits_for() const;
   /// Forgets the place, because the robot has another goal.
   void restart(Time now);
 

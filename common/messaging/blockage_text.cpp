@@ -21,6 +21,8 @@ std::string cause(const Blockage& blockage) {
     case msg::BlockReason::BLOCK_STRANGER:
       return fmt::format("a stranger {:.2f} m away, who may move at {:.1f} m/s",
                          (blockage.blocker_m - blockage.nearest_m).norm(), blockage.blocker_speed_mps);
+    case msg::BlockReason::BLOCK_PASSING_ROBOT:
+      return fmt::format("robot {} has to pass first", blockage.blocker);
     case msg::BlockReason::BLOCK_NONE:
     case msg::BlockReason::BLOCK_NO_PATH:
       break;

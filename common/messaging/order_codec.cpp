@@ -184,7 +184,7 @@ std::optional<OrderPage> decode(const msg::OrderMemory& message, Time now) {
 std::optional<OrderReport> decode(const msg::OrderStatus& message) {
   const bool is_valid = message.robot() < kMaxRobots && message.header().sender() == message.robot() &&
                         is_enumerator(message.order_state(), msg::OrderState::ORDER_LEFT) &&
-                        is_enumerator(message.block_reason(), msg::BlockReason::BLOCK_STRANGER) &&
+                        is_enumerator(message.block_reason(), msg::BlockReason::BLOCK_PASSING_ROBOT) &&
                         is_on_floor(message.blocker_x_m(), message.blocker_y_m()) &&
                         is_on_floor(message.nearest_x_m(), message.nearest_y_m()) &&
                         is_between(message.blocker_speed_mps(), 0, kMaxSpeed_mps) &&

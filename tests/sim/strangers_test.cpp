@@ -139,6 +139,18 @@ TEST_CASE("robots creep away from strangers that stand beside them, arrive if th
   CHECK(totals.could_not > 0);
 }
 
+TEST_CASE("a robot that sees other strangers from other places of its way does not turn around for ever") {
+  Totals totals;
+  run_scene(1162, totals);
+  CHECK(totals.arrived == totals.robots);
+}
+
+TEST_CASE("a robot that gives way among strangers names the robot for which it waits") {
+  Totals totals;
+  run_scene(1393, totals);
+  CHECK(totals.arrived == totals.robots);
+}
+
 // Seeds 1 to 1000 are not used, because creeping was tuned on them.
 TEST_CASE("robots leave standing strangers in five hundred scenes", "[.long][slow]") {
   Totals totals;

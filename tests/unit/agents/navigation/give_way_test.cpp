@@ -58,13 +58,17 @@ TEST_CASE("a robot that is stuck in a corridor backs into the nearest bay until 
   std::optional<Vec2> place;
   for (double t = 1.6; t < 6 && !place; t += 0.1) place = robot.decide(t, {0, 0}, facing, fixed);
   REQUIRE(place.has_value() == is_reachable);
+  CHECK(robot.give_way.waits_for().has_value() == is_reachable);
   if (!is_reachable) return;
+  CHECK(robot.give_way.waits_for()->first == 7);
+  CHECK(robot.give_way.waits_for()->second == Vec2(0.2, 0));
   CHECK(std::abs(place->x() - bay_x_m) < 0.2);
   CHECK(place->y() >= kSeparation_m);
   CHECK_FALSE(fixed.touches(*place, kRequired_m));
   // The robot stays while the other robot is on its way, and continues once it has passed.
   CHECK(robot.decide(7, *place, {oncoming_robot(bay_x_m + 0.5, -4.9)}, fixed) == place);
   CHECK_FALSE(robot.decide(8, *place, {oncoming_robot(bay_x_m - 0.5, -4.9)}, fixed));
+  CHECK_FALSE(robot.give_way.waits_for());
 }
 
 TEST_CASE("a robot gives way only if it is stuck and blocks a robot with the right of way") {

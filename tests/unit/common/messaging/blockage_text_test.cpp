@@ -12,6 +12,7 @@ TEST_CASE("the text about a blockage states its cause") {
   const std::string instead = "; it goes to 0.50,0.25 instead";
   CHECK(text(msg::BlockReason::BLOCK_OBSTACLE) == "an obstacle at 1.23,-2.00 covers its goal" + instead);
   CHECK(text(msg::BlockReason::BLOCK_ROBOT) == "robot 5 stands on its goal" + instead);
+  CHECK(text(msg::BlockReason::BLOCK_PASSING_ROBOT) == "robot 5 has to pass first" + instead);
   CHECK(text(msg::BlockReason::BLOCK_ZONE) == "zone 5 covers its goal" + instead);
   CHECK(text(msg::BlockReason::BLOCK_NO_PATH) == "no path leads to its goal" + instead);
   CHECK(text(msg::BlockReason::BLOCK_OCCLUDED_CORNER) ==

@@ -229,7 +229,7 @@ TEST_CASE("an agent's report with a value out of range or about another robot is
   };
   CHECK(is_refused_with([](auto& m) { m.header().sender(4); }));
   CHECK(is_refused_with([](auto& m) { m.order_state(static_cast<msg::OrderState>(5)); }));
-  CHECK(is_refused_with([](auto& m) { m.block_reason(static_cast<msg::BlockReason>(7)); }));
+  CHECK(is_refused_with([](auto& m) { m.block_reason(static_cast<msg::BlockReason>(8)); }));
   CHECK(is_refused_with([](auto& m) { m.block_reason(msg::BlockReason::BLOCK_NONE); }));
   CHECK(is_refused_with([](auto& m) { m.blocker_x_m(kNan); }));
   CHECK(is_refused_with([](auto& m) { m.blocker_y_m(1e5); }));
