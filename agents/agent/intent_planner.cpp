@@ -7,13 +7,15 @@
 
 #include "agents/agent/planning_distances.hpp"
 #include "agents/navigation/right_of_way.hpp"
+#include "agents/navigation/trapezoidal_profile.hpp"
 #include "common/map/ray_cast.hpp"
 
 namespace sidestep {
 namespace {
 
-/// Lower ids and higher ids alternately have the right of way, each for this long.
-constexpr Duration kRightOfWayPeriod{10'000'000'000};
+/// A robot that is overdue for longer counts as having just set out: robots before which it goes may be
+/// unable to pass it.
+constexpr Duration kPatience{10'000'000'000};
 /// A robot whose intended speed is below this fraction of the limit counts as waiting.
 constexpr double kWaitingSpeedFraction = 0.5;
 constexpr double kRecoveryClearPath_m = 0.5;  ///< length of free path that a recovery direction requires
@@ -49,7 +51,16 @@ IntentPlanner::IntentPlanner(RobotId robot, const std::optional<LocalMethods>& l
     : robot_(robot), local_(local), rules_(rules), steering_(steering) {}
 
 Intent IntentPlanner::choose(const Query& query, const RouteToTarget& routes, Neighbours& neighbours) {
-  return local_ ? steer_locally(query, routes, neighbours) : steer(query, routes, neighbours);
+  const Time due_at = due(query);
+  Intent intent = local_ ? steer_locally(query, routes, neighbours) : steer(query, routes, neighbours);
+  intent.due = due_at;
+  return intent;
+}
+
+Time IntentPlanner::due(const Query& query) {
+  if (!due_ || query.start - *due_ > kPatience)
+    due_ = query.start + from_seconds(TrapezoidalProfile::duration_s(query.route.length_m, 0, rules_.limits));
+  return *due_;
 }
 
 Intent IntentPlanner::steer(const Query& query, const RouteToTarget& routes, Neighbours& neighbours) {
@@ -80,7 +91,7 @@ void IntentPlanner::add_robots(const Query& query, Neighbours& neighbours) {
     const std::optional<Intent> intent = intent_at(*version, query.start);
     if (!intent)
       steering_.add_stationary(state.position_m, separation);
-    else if (has_right_of_way(version->robot, robot_, query.start, kRightOfWayPeriod))
+    else if (goes_first({version->robot, intent->due}, {robot_, *due_}))
       steering_.add_moving(state, *intent, separation);
   }
 }

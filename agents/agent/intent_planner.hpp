@@ -39,12 +39,17 @@ class IntentPlanner {
   /// Processes the result of the search for the intent. `speed_mps` is the robot's speed.
   void on_search(const Intent& intent, bool desired_is_clear, double speed_mps, Time now);
 
+  /// The robot has another goal, or its clock was set back: it is due at another time.
+  void on_new_goal() { due_.reset(); }
+
   /// Whether the robot turns aside because it is blocked.
   bool is_recovering() const { return recovery_.is_active(); }
   /// Number of choices that did not continue the previous choice.
   std::uint64_t changes() const { return last_choice_.changes; }
 
  private:
+  /// When the robot is due at its goal: at the time that it chose when it set out, or later if it is overdue.
+  Time due(const Query& query);
   Intent steer(const Query& query, const RouteToTarget& routes, Neighbours& neighbours);
   /// Like steer(), but uses the planner's local methods. Fills preferred_mps_.
   Intent steer_locally(Query query, const RouteToTarget& routes, Neighbours& neighbours);
@@ -64,6 +69,7 @@ class IntentPlanner {
   DeadlockRecovery recovery_;
   LastChoice last_choice_;
   Time last_steered_start_{};
+  std::optional<Time> due_;
   std::optional<LocalDriver> local_driver_;  // made when local_ is first used
   std::vector<Circle> bodies_nearby_;
   std::vector<Vec2> preferred_mps_, preferred_mps2_;  // chosen by the local methods in this cycle

@@ -66,6 +66,7 @@ void MotionPlanner::restart_timers(Time now) {
   passage_.restart(now);
   blockage_.restart();
   corners_.restart();
+  intents_.on_new_goal();
 }
 
 Vec2 MotionPlanner::target_m(const Query& query) const {
@@ -167,6 +168,7 @@ void MotionPlanner::on_search(const MotionPlan& plan, bool desired_is_clear, Tim
 
 void MotionPlanner::on_new_goal() {
   route_.forget();
+  intents_.on_new_goal();
   blockage_.clear();
   passage_.restart(last_plan_);
 }

@@ -9,6 +9,7 @@ namespace sidestep {
 namespace {
 
 constexpr std::uint64_t kRandomPeriod = 4;
+constexpr Duration kSameDue{250'000'000};  ///< smaller differences between due times are accidental
 
 std::uint64_t number_of_period(Time t, Duration period) {
   return static_cast<std::uint64_t>(t.time_since_epoch() / period);
@@ -16,9 +17,11 @@ std::uint64_t number_of_period(Time t, Duration period) {
 
 }  // namespace
 
-bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period) {
-  const bool is_low_first = number_of_period(t, period) % 2 == 0;
-  return (other < self) == is_low_first;
+bool goes_first(const DueRobot& other, const DueRobot& self) {
+  const auto rank = [](const DueRobot& robot) {
+    return std::pair(robot.due.time_since_epoch() / kSameDue, robot.robot);
+  };
+  return rank(other) < rank(self);
 }
 
 bool other_passes_first(const PassageContender& other, const PassageContender& self, Time t,

@@ -7,10 +7,17 @@
 
 namespace sidestep {
 
+/// A robot that drives, and when it is due at its goal according to its intent.
+struct DueRobot {
+  RobotId robot = 0;
+  Time due{};
+};
+
 /// Whether `self` must yield to `other` while both drive. All robots must agree on who yields: if every robot
-/// yields to every other, their choices oscillate. In alternating periods, lower ids or higher ids have the
-/// right of way, so no robot always yields.
-[[nodiscard]] bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period);
+/// yields to every other, their choices oscillate. The robot that is due earlier goes first: a robot that is
+/// nearly there loses most of its time by a detour, and an order that is given later cannot overtake. Robots
+/// that are due in the same quarter of a second go by their ids. A robot without a due time goes first.
+[[nodiscard]] bool goes_first(const DueRobot& other, const DueRobot& self);
 
 /// A robot that wants to pass, with the number of its order. The number is a clock reading, so older orders
 /// have smaller numbers.

@@ -25,13 +25,13 @@ constexpr std::array kViaLateral{0.06, 0.12, 0.18, 0.25, 0.33, 0.45};
 constexpr double kMinViaDistance_m = 1.25 * batch::kWaypointRadius_m;
 // Costs in seconds that are added to the predicted time to the goal.
 /// Cost of sharing a robot's position during the first prediction step.
-constexpr double kDanger_s = 1;
+constexpr double kDanger_s = 2;
 /// Danger at the end of the prediction, as a fraction of kDanger_s.
 constexpr double kFinalDangerFraction = 0.08;
 constexpr double kDangerDecayExponent = 1.75;  ///< shape of the decay of danger over time
 /// Cost of turning left: robots that all turn right can pass each other.
-constexpr double kLeftTurnPenalty_s = 0.16;
-constexpr double kSwitchPenalty_s = 0.06;  ///< cost of giving up the previous detour for another candidate
+constexpr double kLeftTurnPenalty_s = 0.1;
+constexpr double kSwitchPenalty_s = 0.12;  ///< cost of giving up the previous detour for another candidate
 /// The previous detour is kept without a comparison if its danger is below this.
 constexpr double kTolerableDanger_s = 0.02;
 // Preferred clearances beyond the minimum separation.

@@ -14,11 +14,9 @@ constexpr Duration kMaxPhaseDuration = std::chrono::minutes(1);
 bool within(double value, double bound) { return std::abs(value) <= bound; }
 
 std::optional<Intent> decode(const msg::Intent& message) {
-  const Intent intent{{message.vx_mps(), message.vy_mps()},
-                      message.velocity_duration_s(),
-                      {message.via_x_m(), message.via_y_m()},
-                      {message.goal_x_m(), message.goal_y_m()},
-                      {message.target_x_m(), message.target_y_m()}};
+  const Intent intent{{message.vx_mps(), message.vy_mps()},         message.velocity_duration_s(),
+                      {message.via_x_m(), message.via_y_m()},       {message.goal_x_m(), message.goal_y_m()},
+                      {message.target_x_m(), message.target_y_m()}, time_from_ns(message.due_ns())};
   const auto is_position = [](const Vec2& p) {
     return within(p.x(), kMaxCoordinate_m) && within(p.y(), kMaxCoordinate_m);
   };
@@ -40,6 +38,7 @@ msg::Intent encode(const Intent& intent) {
   message.goal_y_m(static_cast<float>(intent.goal_m.y()));
   message.target_x_m(static_cast<float>(intent.target_m.x()));
   message.target_y_m(static_cast<float>(intent.target_m.y()));
+  message.due_ns(to_ns(intent.due));
   return message;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/geometry/vec2.hpp"
+#include "common/time/time.hpp"
 
 namespace sidestep {
 
@@ -13,6 +14,9 @@ struct Intent {
   Vec2 waypoint_m{0, 0};
   Vec2 goal_m{0, 0};    ///< end of the robot's route
   Vec2 target_m{0, 0};  ///< the place that the robot wants to reach, even if its route ends elsewhere
+  /// When the robot expected to reach its goal when it set out, had it the floor for itself; see
+  /// right_of_way.hpp.
+  Time due{};
 };
 
 }  // namespace sidestep

@@ -9,10 +9,11 @@ static_assert(robot::Version::kMaxPhases == Trajectory::kMaxPhases);
 // The wire format uses float, so no precision is lost.
 robot::Intent to_plain(const Intent& intent) {
   const auto narrow = [](double value) { return static_cast<float>(value); };
-  return {
-      narrow(intent.velocity_mps.x()), narrow(intent.velocity_mps.y()), narrow(intent.velocity_duration_s),
-      narrow(intent.waypoint_m.x()),   narrow(intent.waypoint_m.y()),   narrow(intent.goal_m.x()),
-      narrow(intent.goal_m.y()),       narrow(intent.target_m.x()),     narrow(intent.target_m.y())};
+  return {narrow(intent.velocity_mps.x()),    narrow(intent.velocity_mps.y()),
+          narrow(intent.velocity_duration_s), narrow(intent.waypoint_m.x()),
+          narrow(intent.waypoint_m.y()),      narrow(intent.goal_m.x()),
+          narrow(intent.goal_m.y()),          narrow(intent.target_m.x()),
+          narrow(intent.target_m.y()),        to_ns(intent.due)};
 }
 
 Intent from_plain(const robot::Intent& intent) {
@@ -20,7 +21,8 @@ Intent from_plain(const robot::Intent& intent) {
           intent.velocity_duration_s,
           {intent.waypoint_x_m, intent.waypoint_y_m},
           {intent.goal_x_m, intent.goal_y_m},
-          {intent.target_x_m, intent.target_y_m}};
+          {intent.target_x_m, intent.target_y_m},
+          time_from_ns(intent.due_ns)};
 }
 
 }  // namespace

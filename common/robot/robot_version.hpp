@@ -39,6 +39,7 @@ struct Intent {
   float waypoint_x_m = 0, waypoint_y_m = 0;
   float goal_x_m = 0, goal_y_m = 0;
   float target_x_m = 0, target_y_m = 0;
+  std::int64_t due_ns = 0;
 };
 
 /// One version of the robot's trajectory, with the fields of Version in idl/trajectory.idl: from start_ns on,

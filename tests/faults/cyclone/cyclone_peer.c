@@ -66,7 +66,7 @@ static void print_header(const sidestep_msg_Header* m) {
 }
 static void print_intent(const sidestep_msg_Intent* m) {
   REAL(m, vx_mps), REAL(m, vy_mps), REAL(m, velocity_duration_s), REAL(m, via_x_m), REAL(m, via_y_m);
-  REAL(m, goal_x_m), REAL(m, goal_y_m), REAL(m, target_x_m), REAL(m, target_y_m);
+  REAL(m, goal_x_m), REAL(m, goal_y_m), REAL(m, target_x_m), REAL(m, target_y_m), SIGNED(m, due_ns);
 }
 static void print_phase(const sidestep_msg_MotionPhase* m) {
   SIGNED(m, duration_ns), REAL(m, ax_mps2), REAL(m, ay_mps2);

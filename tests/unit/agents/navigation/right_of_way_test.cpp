@@ -15,11 +15,31 @@ Time in_period(int number) { return Time(number * kPeriod + kPeriod / 2); }
 
 }  // namespace
 
-TEST_CASE("each of two moving robots has the right of way in every second period") {
-  for (int period = 0; period < 4; ++period) {
-    CAPTURE(period);
-    CHECK(has_right_of_way(3, 7, in_period(period), kPeriod) == (period % 2 == 0));
-    CHECK(has_right_of_way(7, 3, in_period(period), kPeriod) == (period % 2 == 1));
+TEST_CASE("the robot that is due earlier goes first, and ids decide if both are due at about the same time") {
+  const auto due = [](double seconds) { return time_from_ns(1'000'000'000'000) + from_seconds(seconds); };
+  CHECK(goes_first({7, due(1)}, {3, due(2)}));
+  CHECK_FALSE(goes_first({3, due(2)}, {7, due(1)}));
+  CHECK(goes_first({3, due(1.2)}, {7, due(1.1)}));
+  CHECK_FALSE(goes_first({7, due(1.1)}, {3, due(1.2)}));
+  CHECK(goes_first({7, Time{}}, {3, due(1)}));
+}
+
+TEST_CASE("exactly one of two robots goes first, and a robot before which another goes is not first itself") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    std::vector<DueRobot> robots;
+    for (RobotId robot = 0; robot < 8; ++robot)
+      robots.push_back({robot, time_from_ns(static_cast<std::int64_t>(rng.bits()))});  // as hostile as may be
+    for (RobotId robot = 8; robot < 16; ++robot)
+      robots.push_back({robot, time_from_ns(static_cast<std::int64_t>(rng.below(1'000'000'000)))});
+    std::vector<int> ahead;  // number of robots that precede each robot
+    for (const DueRobot& self : robots)
+      ahead.push_back(static_cast<int>(std::ranges::count_if(robots, [&](const DueRobot& other) {
+        return other.robot != self.robot && goes_first(other, self);
+      })));
+    std::ranges::sort(ahead);
+    for (int i = 0; i < 16; ++i) CHECK(ahead[static_cast<std::size_t>(i)] == i);
   }
 }
 

@@ -9,7 +9,7 @@ namespace sidestep {
 
 inline bool is_same(const Intent& a, const Intent& b) {
   return a.velocity_mps == b.velocity_mps && a.velocity_duration_s == b.velocity_duration_s &&
-         a.waypoint_m == b.waypoint_m && a.goal_m == b.goal_m && a.target_m == b.target_m;
+         a.waypoint_m == b.waypoint_m && a.goal_m == b.goal_m && a.target_m == b.target_m && a.due == b.due;
 }
 
 inline bool is_same(const Trajectory& a, const Trajectory& b) {

@@ -96,6 +96,7 @@ msg::Version some_version() {
   version.intent().goal_y_m(6);
   version.intent().target_x_m(7);
   version.intent().target_y_m(8);
+  version.intent().due_ns(9);
   version.phase_count(1);
   version.phases()[0].duration_ns(1'000'000'000);
   version.phases()[0].ax_mps2(-0.5);
@@ -107,7 +108,7 @@ constexpr const char* kSomeVersion =
     R"({"robot":3,"incarnation":18000000000000000000,"version_number":12,"base":11,"start_ns":-5,"x_m":1.5,)"
     R"("y_m":-2.25,"vx_mps":0.5,"vy_mps":0.125,"inflation_m":0.0625,"has_intent":true,"intent":{"vx_mps":0.25,)"
     R"("vy_mps":-0.25,"velocity_duration_s":2.0,"via_x_m":3.0,"via_y_m":4.0,"goal_x_m":5.0,"goal_y_m":6.0,)"
-    R"("target_x_m":7.0,"target_y_m":8.0},"phase_count":1,)"
+    R"("target_x_m":7.0,"target_y_m":8.0,"due_ns":9},"phase_count":1,)"
     R"("phases":[{"duration_ns":1000000000,"ax_mps2":-0.5,"ay_mps2":9.0}]})";
 
 template <typename Message>
