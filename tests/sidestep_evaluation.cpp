@@ -4,7 +4,7 @@
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "common/version/version.hpp"
-#include "tests/bench/planning/bench_command.hpp"
+#include "tests/bench/bench_command.hpp"
 #include "tests/study/study_command.hpp"
 
 int main(int argc, char** argv) {

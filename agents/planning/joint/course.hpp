@@ -8,15 +8,17 @@
 
 namespace sidestep {
 
-/// A robot's planned motion over all time: a sequence of trajectories from rest to rest, each of which starts
-/// where the previous trajectory ends. The robot rests between them, before the first and after the last.
+/// A robot's planned motion over all time: a sequence of trajectories, each of which starts where the
+/// previous one ends. The robot rests before the first and after the last. Between two trajectories it rests,
+/// or the second continues the motion of the first at once.
 class Course {
  public:
   Course() = default;
   /// Rests from `start` on.
   Course(Time start, const Vec2& position_m) : legs_{Trajectory::resting(start, position_m)} {}
 
-  /// Precondition: the leg starts at rest where the course ends, and not earlier than it ends.
+  /// Precondition: the leg starts where the course ends, and not earlier than it ends. If it starts later,
+  /// both are at rest then; otherwise it has the velocity with which the course ends.
   void append(const Trajectory& leg) { legs_.push_back(leg); }
 
   /// The legs; during the first leg the robot rests at the start.

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "agents/planning/joint/composite_domain.hpp"
+#include "agents/planning/joint/priority_order.hpp"
 #include "agents/planning/joint/space_time_path.hpp"
 
 namespace sidestep {
@@ -16,14 +17,6 @@ constexpr std::size_t kMaxOrders = 1000;        ///< maximum number of orders of
 
 bool is_spent(const Budget& budget, std::size_t samples) {
   return samples >= budget.samples || (budget.clock && budget.clock() >= budget.until);
-}
-
-void move_to_front(std::vector<std::size_t>& order, std::size_t place, Rng& rng) {
-  if (place == 0)
-    rng.shuffle(order);
-  else
-    std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(place),
-                order.begin() + static_cast<std::ptrdiff_t>(place) + 1);
 }
 
 }  // namespace

@@ -3,14 +3,9 @@
 
 #include "agents/planning/joint/course.hpp"
 #include "agents/planning/joint/leg.hpp"
-#include "common/random/rng.hpp"
+#include "tests/unit/common/collision/random_world.hpp"
 
 namespace sidestep {
-
-inline Vec2 random_position(Rng& rng, double half_m) {
-  const double y = rng.uniform(-half_m, half_m), x = rng.uniform(-half_m, half_m);
-  return {x, y};
-}
 
 /// A few legs in a square, with random waits between them.
 inline Course random_course(Rng& rng, int legs, double half_m) {

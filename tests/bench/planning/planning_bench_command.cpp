@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/bench/planning/bench_command.hpp"
+#include "tests/bench/planning/planning_bench_command.hpp"
 
 #include <memory>
 
@@ -9,10 +9,7 @@
 
 namespace sidestep {
 
-void add_bench_command(const CliCommand& root, std::function<int()>& action) {
-  const CliCommand bench =
-      root.add_subcommand("bench", "Benchmarks parts of the system against other libraries");
-  bench.require_subcommand();
+void add_planning_bench_command(const CliCommand& bench, std::function<int()>& action) {
   const CliCommand command = bench.add_subcommand(
       "planning",
       "All planners in all worlds: time, length, validity. Exits with 1 if a path is invalid, or if our "

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Adds `bench planning`. Parsing it sets `action`, which returns the exit code.
+/// Adds `bench` with its benchmarks. Parsing one of them sets `action`, which returns the exit code.
 void add_bench_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

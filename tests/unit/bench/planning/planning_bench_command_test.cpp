@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/bench/planning/bench_command.hpp"
+#include "tests/bench/planning/planning_bench_command.hpp"
 
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "tests/catch.hpp"
 
-namespace sidestep::bench_command_test {
+namespace sidestep::planning_bench_command_test {
 
-/// The exit code of `bench planning ARGUMENTS` in one world with a few queries.
+/// The exit code of `planning ARGUMENTS` in one world with a few queries.
 int bench(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {"test", "bench", "planning"});
+  arguments.insert(arguments.begin(), {"test", "planning"});
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   CommandLine command_line("test", "test");
   const CliCommand app = command_line.root();
   std::function<int()> action;
-  add_bench_command(app, action);
+  add_planning_bench_command(app, action);
   const auto exit_code = command_line.parse(static_cast<int>(argv.size()), argv.data());
   return exit_code ? *exit_code : action();
 }
@@ -48,4 +48,4 @@ TEST_CASE("the planning benchmark rejects invalid arguments") {
   CHECK(bench({"--ms", "-1"}) == kExitUsage);
 }
 
-}  // namespace sidestep::bench_command_test
+}  // namespace sidestep::planning_bench_command_test

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/crowds/crowd_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "agents/planning/joint/leg.hpp"
+#include "agents/planning/visibility/tangent_graph.hpp"
+#include "deploy/audit/metrics/run_metrics.hpp"
+#include "tests/study/joint_planning/joint_check.hpp"
+#include "tests/study/joint_planning/joint_scene.hpp"
+#include "tests/study/measurement/cpu_clock.hpp"
+
+namespace sidestep {
+namespace {
+
+void check_scene(const Scenario& scenario) {
+  if (!scenario.opponents.empty() || scenario.map)
+    throw std::invalid_argument("the reference plans scenes without opponents and without a map");
+  for (const RobotSpec& robot : scenario.robots)
+    if (robot.goals.size() != 1)
+      throw std::invalid_argument(fmt::format("the reference needs one goal for robot {}, which has {}",
+                                              robot.id, robot.goals.size()));
+}
+
+JointProblem problem_without_margin(const Scenario& scenario, const ObstacleWorld& world) {
+  JointProblem problem = joint_problem(scenario, world);
+  problem.margin_m = 0;
+  return problem;
+}
+
+double speed_limit_mps(const RobotSpec& robot, const MotionLimits& limits) {
+  return std::min(limits.speed_mps, robot.goals.front().speed_limit_mps.value_or(limits.speed_mps));
+}
+
+/// The mean of the robots' times over those for their straight lines; robots that are at their goals from the
+/// beginning have none. nullopt if there are only such robots.
+std::optional<double> mean_ratio(const Scenario& scenario, std::span<const double> times_s) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const double straight_s = straight_line_time_s(scenario.robots[i], scenario.limits);
+    if (straight_s <= 0) continue;
+    sum += times_s[i] / straight_s;
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+}  // namespace
+
+JointPlan plan_reference(const Scenario& scenario, std::uint64_t seed,
+                         const NeighbourhoodSettings& settings) {
+  check_scene(scenario);
+  const ObstacleWorld world(scenario.obstacles);
+  const JointProblem problem = problem_without_margin(scenario, world);
+  std::vector<double> speed_limits_mps;
+  for (const RobotSpec& robot : scenario.robots)
+    speed_limits_mps.push_back(speed_limit_mps(robot, scenario.limits));
+  Rng rng(seed);
+  return NeighbourhoodPlanner(settings).plan(problem, speed_limits_mps, rng);
+}
+
+CrowdResult crowd_result_of(const Scenario& scenario, const JointPlan& plan) {
+  CrowdResult result;
+  result.robots = static_cast<int>(scenario.robots.size());
+  if (!plan.arrives()) return result;
+  result.arrived = result.robots;
+  const ObstacleWorld world(scenario.obstacles);
+  if (!fault_of(problem_without_margin(scenario, world), scenario.obstacles, plan.courses).empty())
+    result.violations = 1;
+  std::vector<double> arrivals_s;
+  for (const Course& course : plan.courses) arrivals_s.push_back(to_seconds(course.end() - Time{}));
+  result.ratio = mean_ratio(scenario, arrivals_s);
+  result.makespan_s = plan.makespan_s();
+  return result;
+}
+
+CrowdResult run_reference(const Scenario& scenario, std::uint64_t seed) {
+  const double begin_us = cpu_us();
+  const JointPlan plan = plan_reference(scenario, seed);
+  const double planning_us = cpu_us() - begin_us;
+  CrowdResult result = crowd_result_of(scenario, plan);
+  const double cycles = std::max(1.0, plan.makespan_s() / to_seconds(scenario.cycle));
+  result.cpu_us = planning_us / (result.robots * cycles);
+  return result;
+}
+
+double lower_bound_ratio(const Scenario& scenario) {
+  check_scene(scenario);
+  constexpr double kTolerance_m = 1e-6;  // for the distance that the graph's paths keep from obstacles
+  const ObstacleWorld world(scenario.obstacles);
+  TangentGraph graph(world, scenario.field, scenario.radius_m - kTolerance_m);
+  std::vector<double> times_s;
+  for (const RobotSpec& robot : scenario.robots) {
+    graph.plan(robot.start_m, robot.goals.front().position_m);
+    MotionLimits limits = scenario.limits;
+    limits.speed_mps = speed_limit_mps(robot, scenario.limits);
+    if (!std::isfinite(graph.shortest_m())) return graph.shortest_m();
+    times_s.push_back(to_seconds(leg_times(graph.shortest_m(), limits).total()));
+  }
+  return mean_ratio(scenario, times_s).value_or(1);
+}
+
+}  // namespace sidestep
