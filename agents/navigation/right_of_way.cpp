@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/right_of_way.hpp"
 
+#include <cstdint>
 #include <utility>
 
 #include "common/random/rng.hpp"
@@ -10,6 +11,8 @@ namespace {
 
 constexpr std::uint64_t kRandomPeriod = 4;
 constexpr Duration kSameDue{250'000'000};  ///< smaller differences between due times are accidental
+/// Ids count up or down for this many such intervals. Robots that meet are mostly due within them.
+constexpr std::int64_t kSameDirection = 40;
 
 std::uint64_t number_of_period(Time t, Duration period) {
   return static_cast<std::uint64_t>(t.time_since_epoch() / period);
@@ -19,7 +22,9 @@ std::uint64_t number_of_period(Time t, Duration period) {
 
 bool goes_first(const DueRobot& other, const DueRobot& self) {
   const auto rank = [](const DueRobot& robot) {
-    return std::pair(robot.due.time_since_epoch() / kSameDue, robot.robot);
+    const auto interval = robot.due.time_since_epoch() / kSameDue;
+    const auto id = static_cast<std::int64_t>(robot.robot);
+    return std::pair(interval, interval / kSameDirection % 2 == 0 ? id : -id);
   };
   return rank(other) < rank(self);
 }

@@ -101,7 +101,7 @@ TEST_CASE(
   double smallest = 1;
   Scenario scenario = circle_scenario(16);
   const double shift_m = 2 * scenario.clock_bound_s * scenario.limits.speed_mps;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     IdealFloor floor(scenario, seed);
     for (const RobotSpec& robot : scenario.robots) {

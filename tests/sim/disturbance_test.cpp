@@ -198,6 +198,8 @@ TEST_CASE("lifted robots are put down with full margins while agents and coordin
         clearance = std::min(clearance, floor.run(rng.uniform(0.1, 1.0)));
       }
       REQUIRE(floor.robots.is_on_floor(lifted));
+      // Nobody lifts a robot again before it could report that it stands.
+      clearance = std::min(clearance, floor.run(0.1));
       if (round % 3 == 1) floor.start_coordinator(killed);
     }
     clearance = std::min(clearance, floor.run_until_arrived(40));

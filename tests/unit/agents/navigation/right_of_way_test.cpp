@@ -21,6 +21,8 @@ TEST_CASE("the robot that is due earlier goes first, and ids decide if both are 
   CHECK_FALSE(goes_first({3, due(2)}, {7, due(1)}));
   CHECK(goes_first({3, due(1.2)}, {7, due(1.1)}));
   CHECK_FALSE(goes_first({7, due(1.1)}, {3, due(1.2)}));
+  CHECK(goes_first({7, due(11.2)}, {3, due(11.1)}));
+  CHECK_FALSE(goes_first({3, due(11.1)}, {7, due(11.2)}));
   CHECK(goes_first({7, Time{}}, {3, due(1)}));
 }
 
