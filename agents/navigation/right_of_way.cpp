@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr std::uint64_t kRandomPeriod = 4;
-constexpr Duration kSameDue{250'000'000};  ///< smaller differences between due times are accidental
+constexpr Duration kSameDue{250'000'000};  ///< robots with due times in one such interval go by their ids
 /// Ids count up or down for this many such intervals. Robots that meet are mostly due within them.
 constexpr std::int64_t kSameDirection = 40;
 

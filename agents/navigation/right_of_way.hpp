@@ -15,9 +15,9 @@ struct DueRobot {
 
 /// Whether `self` must yield to `other` while both drive. All robots must agree on who yields: if every robot
 /// yields to every other, their choices oscillate. The robot that is due earlier goes first: a robot that is
-/// nearly there loses most of its time by a detour, and an order that is given later cannot overtake. Robots
-/// that are due in the same quarter of a second go by their ids, which count up for ten seconds and
-/// then down, so that nobody always yields. A robot without a due time goes first.
+/// nearly there loses most of its time by a detour. Robots whose due times are in the same quarter of a
+/// second go by their ids, which count up for ten seconds of due times and then down. A robot without a due
+/// time goes first.
 [[nodiscard]] bool goes_first(const DueRobot& other, const DueRobot& self);
 
 /// A robot that wants to pass, with the number of its order. The number is a clock reading, so older orders

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "common/messaging/order_codec.hpp"
 #include "common/random/rng.hpp"
@@ -74,12 +75,14 @@ class CauseWatch {
     system.observer_bus().subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& status) {
       const auto report = decode(status);
       blockages_[status.robot()] = report ? report->blockage : std::nullopt;
+      if (report && report->blockage) reasons_.insert(report->blockage->reason);
     });
     system.observer_bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       for (const msg::TrueRobotState& robot : truth.robots()) watch(robot);
     });
   }
   int unnamed() const { return unnamed_; }
+  const std::set<msg::BlockReason>& reasons() const { return reasons_; }
   const std::optional<Blockage>& blockage(RobotId robot) { return blockages_[robot]; }
 
  private:
@@ -99,12 +102,14 @@ class CauseWatch {
   SimSystem& system_;
   const Scenario& scenario_;
   std::map<RobotId, std::optional<Blockage>> blockages_;
+  std::set<msg::BlockReason> reasons_;    // all that were named
   std::map<RobotId, Time> silent_since_;  // since when a robot stands without a named cause
   int unnamed_ = 0;
 };
 
 struct Totals {
   int robots = 0, arrived = 0, could_not = 0;
+  std::set<msg::BlockReason> reasons{};
 };
 
 void run_scene(std::uint64_t seed, Totals& totals) {
@@ -119,6 +124,7 @@ void run_scene(std::uint64_t seed, Totals& totals) {
   CHECK(report.firmware_violations == 0);
   CHECK(report.audit->violations == 0);
   CHECK(causes.unnamed() == 0);
+  totals.reasons.insert(causes.reasons().begin(), causes.reasons().end());
   for (const RobotSpec& robot : scene.scenario.robots) {
     CAPTURE(robot.id);
     const bool has_arrived = report.arrival_s.at(robot.id).has_value();
@@ -149,6 +155,7 @@ TEST_CASE("a robot that gives way among strangers names the robot for which it w
   Totals totals;
   run_scene(1393, totals);
   CHECK(totals.arrived == totals.robots);
+  CHECK(totals.reasons.contains(msg::BlockReason::BLOCK_PASSING_ROBOT));
 }
 
 // Seeds 1 to 1000 are not used, because creeping was tuned on them.

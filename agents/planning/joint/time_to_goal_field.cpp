@@ -113,15 +113,13 @@ void TimeToGoalField::compute(const Vec2& goal_m, double speed_mps,
 }
 
 void TimeToGoalField::compute_last(std::span<const SampledCourse* const> others) {
+  // A cell with kNever is blocked here; all others are not reached yet.
+  constexpr Ms kOpen = kNever - 1;
   Ms* times = times_.data() + last_ * is_blocked_.size();
-  std::fill_n(times, is_blocked_.size(), Ms{0});
+  std::fill_n(times, is_blocked_.size(), kOpen);
   for (const SampledCourse* other : others) block(other->samples_m.back(), times);
   for (std::size_t cell = 0; cell < is_blocked_.size(); ++cell)
     if (is_blocked_[cell]) times[cell] = kNever;
-  // A cell with kNever is blocked here; all others are not reached yet.
-  constexpr Ms kOpen = kNever - 1;
-  for (std::size_t cell = 0; cell < is_blocked_.size(); ++cell)
-    if (times[cell] != kNever) times[cell] = kOpen;
   using Entry = std::pair<Ms, std::uint32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   const auto relax = [&](std::size_t cell, double ms) {

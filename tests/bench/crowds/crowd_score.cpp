@@ -2,6 +2,7 @@
 #include "tests/bench/crowds/crowd_score.hpp"
 
 #include <fmt/format.h>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -56,7 +57,10 @@ void CrowdScore::add(const CrowdResult& result) {
 
 bool is_better(const CrowdScore& first, const CrowdScore& second) {
   const auto key = [](const CrowdScore& score) {
-    return std::tuple(score.contacts + score.violations, score.robots - score.arrived, score.ratio.mean());
+    // The mean of no scenes is 0, which would be the best.
+    const double ratio =
+        score.ratio.size() > 0 ? score.ratio.mean() : std::numeric_limits<double>::infinity();
+    return std::tuple(score.contacts + score.violations, score.robots - score.arrived, ratio);
   };
   return key(first) < key(second);
 }

@@ -77,6 +77,10 @@ TEST_CASE(
   CHECK(is_better(faster, clean));
   CHECK_FALSE(is_better(clean, faster));
   CHECK_FALSE(is_better(clean, clean));
+  // Without a scene in which all robots arrive, there is no ratio.
+  const CrowdScore once_stuck = score_of({{8, 7, 0, 0, {}, {}, 1}, {8, 8, 0, 0, 1.4, 5, 1}});
+  CHECK(is_better(once_stuck, stuck));
+  CHECK_FALSE(is_better(stuck, once_stuck));
 }
 
 }  // namespace sidestep::crowd_score_test
