@@ -16,7 +16,6 @@ void DisplacedObstacles::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Tim
     const double error_m = kObstacleSigmas * std::sqrt(seen->position_variance_m2);
     bodies_.push_back({{seen->position_m, radius_m_ + error_m, seen->observed_at - max_clock_difference_,
                         max_speed_mps_, seen->velocity_mps},
-                       seen->velocity_mps,
                        2 * radius_m_ + margin_m_});
   }
 }

@@ -16,7 +16,7 @@ struct MovingObstacle {
   double radius_m = 0;  ///< includes the uncertainty of the position
   Time observed_at{};
   double speed_mps = 0;  ///< upper bound of the speed
-  /// Estimated velocity, possibly NaN. Only routes use it; safety does not depend on it.
+  /// Estimated velocity, possibly NaN. Passive safety does not depend on it.
   Vec2 velocity_mps{0, 0};
 
   /// Maximum distance of the obstacle's edge from position_m at a time, which may be before the observation.

@@ -23,13 +23,14 @@ constexpr Duration kDrivingOnStep{50'000'000}, kMaxDrivingOn{400'000'000};
 
 double UncontrolledBody::distance_from_path_m(const Vec2& position_m) const {
   const Vec2 offset = position_m - reach.position_m;
-  if (offset.dot(velocity_mps) <= 0) return offset.norm();
-  return std::abs(velocity_mps.x() * offset.y() - velocity_mps.y() * offset.x()) / velocity_mps.norm();
+  if (offset.dot(reach.velocity_mps) <= 0) return offset.norm();
+  return std::abs(reach.velocity_mps.x() * offset.y() - reach.velocity_mps.y() * offset.x()) /
+         reach.velocity_mps.norm();
 }
 
 double UncontrolledBody::required_distance_m(const Vec2& position_m) const {
-  if (velocity_mps.isZero(0)) return kUnknownDirection_m;
-  const double ahead_m = (position_m - reach.position_m).dot(velocity_mps) / velocity_mps.norm();
+  if (reach.velocity_mps.isZero(0)) return kUnknownDirection_m;
+  const double ahead_m = (position_m - reach.position_m).dot(reach.velocity_mps) / reach.velocity_mps.norm();
   return separation_m + kAllowance_m + kSpread * std::max(ahead_m, 0.0);
 }
 
@@ -37,14 +38,14 @@ double excess_distance_m(const Trajectory& trajectory, Time from, const Uncontro
   double spare_m = std::numeric_limits<double>::infinity();
   for (Time t = from; t < trajectory.end(); t += kSampling) {
     const double age_s = to_seconds(t - body.reach.observed_at);
-    const Vec2 body_m = body.reach.position_m + age_s * body.velocity_mps;
+    const Vec2 body_m = body.reach.position_m + age_s * body.reach.velocity_mps;
     const double distance_m = (trajectory.state_at(t).position_m - body_m).norm();
     spare_m = std::min(spare_m, distance_m - body.separation_m - kAllowance_m);
   }
   // When the robot comes to rest, the body may still be approaching, or may already have passed.
   UncontrolledBody later = body;
   later.reach.position_m +=
-      to_seconds(std::max(from, trajectory.end()) - body.reach.observed_at) * body.velocity_mps;
+      to_seconds(std::max(from, trajectory.end()) - body.reach.observed_at) * body.reach.velocity_mps;
   const Vec2 rest_m = trajectory.rest_position_m();
   const double required_m = std::min(later.required_distance_m(rest_m), body.required_distance_m(rest_m));
   return std::min(spare_m, later.distance_from_path_m(rest_m) - required_m);
@@ -71,8 +72,9 @@ bool rests_safely(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody
   const double distance_m = body.distance_from_path_m(rest_m);
   if (distance_m >= body.required_distance_m(rest_m)) return true;
   const double out_m = distance_m - body.distance_from_path_m(stop_m);
+  const Vec2& velocity_mps = body.reach.velocity_mps;
   const double towards_m =
-      body.velocity_mps.isZero(0) ? 0 : (stop_m - rest_m).dot(body.velocity_mps) / body.velocity_mps.norm();
+      velocity_mps.isZero(0) ? 0 : (stop_m - rest_m).dot(velocity_mps) / velocity_mps.norm();
   return out_m >= std::max(towards_m, 0.0);
 }
 

@@ -12,8 +12,9 @@ namespace sidestep {
 /// A body that nothing controls, such as a robot without power. It may hit a resting robot, so passive safety
 /// is not enough: a robot must not come to rest where the body is going.
 struct UncontrolledBody {
-  MovingObstacle reach;     ///< the positions that it can reach
-  Vec2 velocity_mps{0, 0};  ///< expected velocity; zero: it is at rest, or its velocity is unknown
+  /// The positions that it can reach, and its expected velocity, which is finite; zero: it is at rest, or its
+  /// velocity is unknown.
+  MovingObstacle reach;
   double separation_m = 0;  ///< distance between centres at contact with the robot, plus the margin
 
   /// Distance of a position from the centre line of the body's path, which is straight and endless; if the

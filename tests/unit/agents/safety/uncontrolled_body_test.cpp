@@ -27,7 +27,7 @@ Trajectory driving(const Vec2& from, const Vec2& velocity, double seconds) {
 //   (o)->  --------------
 //            ~~~~~~~---
 UncontrolledBody moving(const Vec2& velocity = {1, 0}) {
-  return {{{0, 0}, 0.09, kNow, 2}, velocity, kSeparation_m};
+  return {{{0, 0}, 0.09, kNow, 2, velocity}, kSeparation_m};
 }
 
 bool may_follow(const Trajectory& candidate, const Trajectory& stop, const UncontrolledBody& body) {
@@ -132,7 +132,8 @@ TEST_CASE("a trajectory that avoids a body stays clear of it at every sampled in
     double least = 10;
     for (double t = 0; t < 6; t += 0.002) {
       const Time at = kNow + from_seconds(t);
-      const Vec2 body_m = body.reach.position_m + to_seconds(at - body.reach.observed_at) * body.velocity_mps;
+      const Vec2 body_m =
+          body.reach.position_m + to_seconds(at - body.reach.observed_at) * body.reach.velocity_mps;
       least = std::min(least, (robot.state_at(at).position_m - body_m).norm());
     }
     if (excess_distance_m(robot, kNow, body) >= 0) {
