@@ -19,8 +19,8 @@ namespace sidestep {
 /// and limited like that of a Sidestep robot. Arrival is judged as by RunMetrics. Robots without a goal want
 /// to stay at their starts. Robots that touch do not push each other.
 ///
-/// `violations` counts how often a robot leaves the field. Throws std::invalid_argument for scenarios with
-/// opponents or with robots off the floor.
+/// `violations` counts how often a robot leaves the field. The processor time includes the planning of the
+/// routes. Throws std::invalid_argument for scenarios with opponents or with robots off the floor.
 [[nodiscard]] CrowdResult run_reciprocal_avoidance(const Scenario& scenario,
                                                    const ReciprocalSettings& settings, std::uint64_t seed);
 

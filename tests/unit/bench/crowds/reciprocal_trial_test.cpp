@@ -35,6 +35,7 @@ TEST_CASE("a robot alone arrives hardly later than possible") {
   CHECK(*result.ratio < 1.05);
   CHECK(*result.ratio > 0.97);
   CHECK(result.arrived == 1);
+  CHECK(result.cpu_us > 0);
   CHECK(result.contacts == 0);
 }
 
