@@ -190,10 +190,8 @@ std::optional<double> MotionPlanner::remaining_s(const Assignment& assignment, b
   double length_m = route_.length_m(), seconds = 0;
   Vec2 from = first->position_m;
   for (const Goal& goal : assignment.goals_left()) {
-    MotionLimits limits = rules_.limits;
-    limits.speed_mps = std::min(limits.speed_mps, goal.speed_limit_mps.value_or(limits.speed_mps));
     if (&goal != first) length_m = (goal.position_m - from).norm();
-    seconds += TrapezoidalProfile::duration_s(length_m, 0, limits);
+    seconds += TrapezoidalProfile::duration_s(length_m, 0, limits_to(goal, rules_.limits));
     from = goal.position_m;
   }
   return seconds;

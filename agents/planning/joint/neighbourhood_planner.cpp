@@ -68,7 +68,7 @@ void NeighbourhoodPlanner::set_robots(const JointProblem& problem, std::span<con
     if (!speed_limits_mps.empty())
       query.limits.speed_mps = std::min(query.limits.speed_mps, speed_limits_mps[i]);
     robots_[i].straight_s =
-        to_seconds(leg_times((query.goal_m - query.start_m).norm(), problem.limits).total());
+        to_seconds(leg_times((query.goal_m - query.start_m).norm(), query.limits).total());
   }
 }
 

@@ -48,20 +48,6 @@ bool is_sane(const msg::TrueRobotState& robot) {
 
 }  // namespace
 
-double straight_line_time_s(const RobotSpec& robot, const MotionLimits& limits) {
-  const double f = limits.acceleration_mps2, d = limits.deceleration_mps2, v = limits.speed_mps;
-  const double to_full_speed_m = v * v * (1 / f + 1 / d) / 2;
-  Vec2 from = robot.start_m;
-  double total_s = 0;
-  for (const Goal& goal : robot.goals) {
-    const double distance_m = (goal.position_m - from).norm();
-    const double peak_mps = std::min(v, std::sqrt(2 * distance_m / (1 / f + 1 / d)));
-    total_s += peak_mps * (1 / f + 1 / d) + std::max(0.0, distance_m - to_full_speed_m) / v;
-    from = goal.position_m;
-  }
-  return total_s;
-}
-
 RunMetrics::RunMetrics(const Scenario& scenario) : scenario_(scenario), floor_(scenario) {
   for (const RobotSpec& spec : scenario.robots) {
     RobotRecord robot;

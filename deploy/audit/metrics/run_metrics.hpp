@@ -193,8 +193,4 @@ class RunMetrics {
 /// Subscribes the metrics to a bus; they must outlive the bus's last callback.
 void listen(Bus& bus, RunMetrics& metrics);
 
-/// Lower bound of the time from the start via all goals: straight lines, rest at each goal, acceleration F,
-/// deceleration D, at most v_max, and no other robots.
-[[nodiscard]] double straight_line_time_s(const RobotSpec& robot, const MotionLimits& limits);
-
 }  // namespace sidestep

@@ -9,6 +9,7 @@
 #include "common/protocol/agent_state_text.hpp"
 #include "common/protocol/process_names.hpp"
 #include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/audit/metrics/straight_line_time.hpp"
 
 namespace sidestep {
 namespace {

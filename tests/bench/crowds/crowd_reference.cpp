@@ -11,7 +11,7 @@
 
 #include "agents/planning/joint/leg.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/audit/metrics/straight_line_time.hpp"
 #include "tests/study/joint_planning/joint_check.hpp"
 #include "tests/study/joint_planning/joint_scene.hpp"
 #include "tests/study/measurement/cpu_clock.hpp"
@@ -32,10 +32,6 @@ JointProblem problem_without_margin(const Scenario& scenario, const ObstacleWorl
   JointProblem problem = joint_problem(scenario, world);
   problem.margin_m = 0;
   return problem;
-}
-
-double speed_limit_mps(const RobotSpec& robot, const MotionLimits& limits) {
-  return std::min(limits.speed_mps, robot.goals.front().speed_limit_mps.value_or(limits.speed_mps));
 }
 
 /// The mean of the robots' times over those for their straight lines; robots that are at their goals from the
@@ -61,7 +57,7 @@ JointPlan plan_reference(const Scenario& scenario, std::uint64_t seed,
   const JointProblem problem = problem_without_margin(scenario, world);
   std::vector<double> speed_limits_mps;
   for (const RobotSpec& robot : scenario.robots)
-    speed_limits_mps.push_back(speed_limit_mps(robot, scenario.limits));
+    speed_limits_mps.push_back(limits_to(robot.goals.front(), scenario.limits).speed_mps);
   Rng rng(seed);
   return NeighbourhoodPlanner(settings).plan(problem, speed_limits_mps, rng);
 }
@@ -98,11 +94,10 @@ double lower_bound_ratio(const Scenario& scenario) {
   TangentGraph graph(world, scenario.field, scenario.radius_m - kTolerance_m);
   std::vector<double> times_s;
   for (const RobotSpec& robot : scenario.robots) {
-    graph.plan(robot.start_m, robot.goals.front().position_m);
-    MotionLimits limits = scenario.limits;
-    limits.speed_mps = speed_limit_mps(robot, scenario.limits);
+    const Goal& goal = robot.goals.front();
+    graph.plan(robot.start_m, goal.position_m);
     if (!std::isfinite(graph.shortest_m())) return graph.shortest_m();
-    times_s.push_back(to_seconds(leg_times(graph.shortest_m(), limits).total()));
+    times_s.push_back(to_seconds(leg_times(graph.shortest_m(), limits_to(goal, scenario.limits)).total()));
   }
   return mean_ratio(scenario, times_s).value_or(1);
 }

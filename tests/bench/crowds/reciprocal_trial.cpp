@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/motion/robot_model.hpp"
-#include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/audit/metrics/straight_line_time.hpp"
 #include "tests/bench/crowds/contact_counter.hpp"
 #include "tests/bench/crowds/routed_robot.hpp"
 #include "tests/study/measurement/cpu_clock.hpp"

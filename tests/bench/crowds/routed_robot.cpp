@@ -22,7 +22,7 @@ RoutedRobot::RoutedRobot(const RobotSpec& spec, double goal_tolerance_m, const F
                          const NamedPlanner& planner, const ObstacleWorld& world)
     : spec_(spec),
       goal_tolerance_m_(goal_tolerance_m),
-      max_speed_mps_(rules.limits.speed_mps),
+      floor_limits_(rules.limits),
       limits_(rules.limits),
       routes_(planner, world, rules.field, rules.radius_m, rules.margin_m, {&kExtraClearance_m, 1}),
       state_{spec.start_m, {0, 0}} {
@@ -32,7 +32,7 @@ RoutedRobot::RoutedRobot(const RobotSpec& spec, double goal_tolerance_m, const F
 void RoutedRobot::begin_goal() {
   const Goal goal = spec_.goals.empty() ? Goal{spec_.start_m} : spec_.goals[goal_];
   goal_m_ = goal.position_m;
-  limits_.speed_mps = std::min(max_speed_mps_, goal.speed_limit_mps.value_or(max_speed_mps_));
+  limits_ = limits_to(goal, floor_limits_);
   routes_.begin(goal_m_);
 }
 

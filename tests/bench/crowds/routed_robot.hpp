@@ -38,7 +38,7 @@ class RoutedRobot {
 
   const RobotSpec& spec_;
   double goal_tolerance_m_;
-  double max_speed_mps_;
+  MotionLimits floor_limits_;  // without the speed limits of goals
   MotionLimits limits_;
   RoutePlanner routes_;
   State state_;

@@ -2,6 +2,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "deploy/audit/metrics/progress.hpp"
 #include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/audit/metrics/straight_line_time.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/metrics/run_metrics_messages.hpp"
 

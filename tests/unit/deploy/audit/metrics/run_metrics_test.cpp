@@ -8,26 +8,6 @@
 
 namespace sidestep::run_metrics_test {
 
-TEST_CASE("the straight-line time agrees with slow integration") {
-  for (const double goal_m : {0.01, 0.5, 1.06, 1.07, 3.0, 12.0}) {
-    CAPTURE(goal_m);
-    MotionLimits limits;
-    RobotSpec robot;
-    robot.goals = {Goal{{goal_m, 0}, std::nullopt}};
-    // The reference accelerates in small steps while the braking distance allows.
-    double x = 0, v = 0, t = 0;
-    const double dt = 1e-5;
-    while (goal_m - x > 1e-6) {
-      const bool may_accelerate = goal_m - x > v * v / (2 * limits.deceleration_mps2);
-      v = may_accelerate ? std::min(limits.speed_mps, v + limits.acceleration_mps2 * dt)
-                         : std::max(1e-3, v - limits.deceleration_mps2 * dt);
-      x += v * dt;
-      t += dt;
-    }
-    CHECK(straight_line_time_s(robot, limits) == Approx(t).margin(4e-3));
-  }
-}
-
 TEST_CASE("a dead incarnation whose clock was ahead does not override its successor's status") {
   RunMetrics metrics(kTwo);
   metrics.on_coordinator(state(1, 0, kGranting));
