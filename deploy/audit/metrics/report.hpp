@@ -70,7 +70,7 @@ struct Report {
   /// Arrival time of the last robot; nullopt: not all have arrived.
   std::optional<double> makespan_s;
   std::optional<double> mean_arrival_s;            ///< mean over the robots that arrived
-  std::optional<double> straight_line_time_ratio;  ///< mean of arrival time / straight_line_time_s()
+  std::optional<double> straight_line_time_ratio;  ///< see straight_line_time.hpp
   std::map<RobotId, std::optional<double>> arrival_s;
   std::map<RobotId, std::string>
       not_arrived;  ///< reason for each robot that has not arrived, unless it has no goal

@@ -103,23 +103,21 @@ std::string RunMetrics::reason_not_arrived(const RobotRecord& robot) const {
 void RunMetrics::add_arrivals(Report& report) const {
   report.arrived = arrived();
   report.without_goal = without_goal();
-  double latest_s = 0, total_s = 0, ratio_sum = 0;
-  int ratios = 0;
+  double latest_s = 0, total_s = 0;
+  std::vector<std::optional<double>> arrivals_s;  // in the order of the scenario's robots
   for (const RobotRecord& robot : robots_) {
     auto& arrival_s = report.arrival_s[robot.spec->id];
     if (!is_done(robot)) report.not_arrived[robot.spec->id] = reason_not_arrived(robot);
-    if (!has_arrived(robot) || !granting_since_) continue;
-    arrival_s = std::max(0.0, to_seconds(*robot.settled_since - *granting_since_));
-    latest_s = std::max(latest_s, *arrival_s);
-    total_s += *arrival_s;
-    if (const double shortest_s = straight_line_time_s(*robot.spec, scenario_.limits); shortest_s > 0) {
-      ratio_sum += *arrival_s / shortest_s;
-      ++ratios;
+    if (has_arrived(robot) && granting_since_) {
+      arrival_s = std::max(0.0, to_seconds(*robot.settled_since - *granting_since_));
+      latest_s = std::max(latest_s, *arrival_s);
+      total_s += *arrival_s;
     }
+    arrivals_s.push_back(arrival_s);
   }
   if (report.arrived > 0 && granting_since_) report.mean_arrival_s = total_s / report.arrived;
   if (report.arrived > 0 && report.arrivals().are_complete() && granting_since_) report.makespan_s = latest_s;
-  if (ratios > 0) report.straight_line_time_ratio = ratio_sum / ratios;
+  report.straight_line_time_ratio = straight_line_time_ratio(scenario_.robots, arrivals_s, scenario_.limits);
 }
 
 void RunMetrics::add_agents(Report& report) const {

@@ -21,4 +21,19 @@ double straight_line_time_s(const RobotSpec& robot, const MotionLimits& limits) 
   return total_s;
 }
 
+std::optional<double> straight_line_time_ratio(std::span<const RobotSpec> robots,
+                                               std::span<const std::optional<double>> arrivals_s,
+                                               const MotionLimits& limits) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (!arrivals_s[i]) continue;
+    const double straight_s = straight_line_time_s(robots[i], limits);
+    if (straight_s <= 0) continue;
+    sum += *arrivals_s[i] / straight_s;
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
 }  // namespace sidestep

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -34,20 +33,6 @@ JointProblem problem_without_margin(const Scenario& scenario, const ObstacleWorl
   return problem;
 }
 
-/// The mean of the robots' times over those for their straight lines; robots that are at their goals from the
-/// beginning have none. nullopt if there are only such robots.
-std::optional<double> mean_ratio(const Scenario& scenario, std::span<const double> times_s) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const double straight_s = straight_line_time_s(scenario.robots[i], scenario.limits);
-    if (straight_s <= 0) continue;
-    sum += times_s[i] / straight_s;
-    ++count;
-  }
-  return count > 0 ? std::optional(sum / count) : std::nullopt;
-}
-
 }  // namespace
 
 JointPlan plan_reference(const Scenario& scenario, std::uint64_t seed,
@@ -70,9 +55,9 @@ CrowdResult crowd_result_of(const Scenario& scenario, const JointPlan& plan) {
   const ObstacleWorld world(scenario.obstacles);
   if (!fault_of(problem_without_margin(scenario, world), scenario.obstacles, plan.courses).empty())
     result.violations = 1;
-  std::vector<double> arrivals_s;
+  std::vector<std::optional<double>> arrivals_s;
   for (const Course& course : plan.courses) arrivals_s.push_back(to_seconds(course.end() - Time{}));
-  result.ratio = mean_ratio(scenario, arrivals_s);
+  result.ratio = straight_line_time_ratio(scenario.robots, arrivals_s, scenario.limits);
   result.makespan_s = plan.makespan_s();
   return result;
 }
@@ -92,14 +77,14 @@ double lower_bound_ratio(const Scenario& scenario) {
   constexpr double kTolerance_m = 1e-6;  // for the distance that the graph's paths keep from obstacles
   const ObstacleWorld world(scenario.obstacles);
   TangentGraph graph(world, scenario.field, scenario.radius_m - kTolerance_m);
-  std::vector<double> times_s;
+  std::vector<std::optional<double>> times_s;
   for (const RobotSpec& robot : scenario.robots) {
     const Goal& goal = robot.goals.front();
     graph.plan(robot.start_m, goal.position_m);
     if (!std::isfinite(graph.shortest_m())) return graph.shortest_m();
     times_s.push_back(to_seconds(leg_times(graph.shortest_m(), limits_to(goal, scenario.limits)).total()));
   }
-  return mean_ratio(scenario, times_s).value_or(1);
+  return straight_line_time_ratio(scenario.robots, times_s, scenario.limits).value_or(1);
 }
 
 }  // namespace sidestep

@@ -77,23 +77,19 @@ class ReciprocalFloor {
 
   CrowdResult result() const {
     CrowdResult result;
-    double ratio_sum = 0, makespan_s = 0;
-    int ratios = 0;
+    double makespan_s = 0;
+    std::vector<std::optional<double>> arrivals_s;  // in the order of the scenario's robots
     for (const RoutedRobot& robot : robots_) {
+      arrivals_s.push_back(robot.settled_since_s());
       if (robot.spec().goals.empty()) continue;
       ++result.robots;
-      const std::optional<double> arrival_s = robot.settled_since_s();
-      if (!arrival_s) continue;
+      if (!arrivals_s.back()) continue;
       ++result.arrived;
-      makespan_s = std::max(makespan_s, *arrival_s);
-      const double shortest_s = straight_line_time_s(robot.spec(), scenario_.limits);
-      if (shortest_s <= 0) continue;
-      ratio_sum += *arrival_s / shortest_s;
-      ++ratios;
+      makespan_s = std::max(makespan_s, *arrivals_s.back());
     }
     if (result.arrived == result.robots) {
       result.makespan_s = makespan_s;
-      if (ratios > 0) result.ratio = ratio_sum / ratios;
+      result.ratio = straight_line_time_ratio(scenario_.robots, arrivals_s, scenario_.limits);
     }
     result.contacts = contacts_.contacts();
     result.violations = violations_;

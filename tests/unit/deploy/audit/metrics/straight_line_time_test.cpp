@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "tests/catch.hpp"
 
@@ -61,6 +62,20 @@ TEST_CASE("the straight-line time via several goals respects the speed limit of 
 TEST_CASE("a robot without a goal, or at its goal, needs no time") {
   CHECK(straight_line_time_s(RobotSpec{}, MotionLimits{}) == 0);
   CHECK(straight_line_time_s(robot_to({0, 0}, 0.5), MotionLimits{}) == 0);
+}
+
+TEST_CASE("the straight-line ratio is the mean over robots that have arrived and have a way to drive") {
+  const MotionLimits limits;
+  const std::vector<RobotSpec> robots{robot_to({1, 0}), robot_to({3, 0}, 0.5), robot_to({2, 0}),
+                                      robot_to({0, 0}), RobotSpec{}};
+  const auto times = [&](std::size_t robot, double factor) {
+    return std::optional(factor * straight_line_time_s(robots[robot], limits));
+  };
+  const std::vector<std::optional<double>> arrivals_s{times(0, 1.5), times(1, 2), {}, 4.0, 5.0};
+  CHECK(straight_line_time_ratio(robots, arrivals_s, limits).value_or(0) == Approx(1.75));
+  const std::vector<std::optional<double>> nobody(robots.size());
+  CHECK_FALSE(straight_line_time_ratio(robots, nobody, limits));
+  CHECK_FALSE(straight_line_time_ratio({}, {}, limits));
 }
 
 }  // namespace sidestep::straight_line_time_test
