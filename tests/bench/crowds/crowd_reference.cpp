@@ -33,6 +33,13 @@ JointProblem problem_without_margin(const Scenario& scenario, const ObstacleWorl
   return problem;
 }
 
+std::vector<double> speed_limits_mps(const Scenario& scenario) {
+  std::vector<double> limits_mps;
+  for (const RobotSpec& robot : scenario.robots)
+    limits_mps.push_back(limits_to(robot.goals.front(), scenario.limits).speed_mps);
+  return limits_mps;
+}
+
 }  // namespace
 
 JointPlan plan_reference(const Scenario& scenario, std::uint64_t seed,
@@ -40,11 +47,8 @@ JointPlan plan_reference(const Scenario& scenario, std::uint64_t seed,
   check_scene(scenario);
   const ObstacleWorld world(scenario.obstacles);
   const JointProblem problem = problem_without_margin(scenario, world);
-  std::vector<double> speed_limits_mps;
-  for (const RobotSpec& robot : scenario.robots)
-    speed_limits_mps.push_back(limits_to(robot.goals.front(), scenario.limits).speed_mps);
   Rng rng(seed);
-  return NeighbourhoodPlanner(settings).plan(problem, speed_limits_mps, rng);
+  return NeighbourhoodPlanner(settings).plan(problem, speed_limits_mps(scenario), rng);
 }
 
 CrowdResult crowd_result_of(const Scenario& scenario, const JointPlan& plan) {
@@ -53,7 +57,8 @@ CrowdResult crowd_result_of(const Scenario& scenario, const JointPlan& plan) {
   if (!plan.arrives()) return result;
   result.arrived = result.robots;
   const ObstacleWorld world(scenario.obstacles);
-  if (!fault_of(problem_without_margin(scenario, world), scenario.obstacles, plan.courses).empty())
+  const JointProblem problem = problem_without_margin(scenario, world);
+  if (!fault_of(problem, scenario.obstacles, plan.courses, speed_limits_mps(scenario)).empty())
     result.violations = 1;
   std::vector<std::optional<double>> arrivals_s;
   for (const Course& course : plan.courses) arrivals_s.push_back(to_seconds(course.end() - Time{}));

@@ -17,7 +17,8 @@ namespace sidestep {
                                        const NeighbourhoodSettings& settings = {});
 
 /// How the robots of a scene drive along a plan, without the processor time. A plan in which an independent
-/// check finds a fault, such as discs that overlap, counts as a violation.
+/// check finds a fault, such as discs that overlap or a robot that exceeds the speed limit of its goal,
+/// counts as a violation.
 [[nodiscard]] CrowdResult crowd_result_of(const Scenario& scenario, const JointPlan& plan);
 
 /// How the robots of a scene drive along plan_reference(). The processor time is that of the plan, divided by

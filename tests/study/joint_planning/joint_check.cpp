@@ -44,7 +44,7 @@ double distance_m(const Vec2& p, const RoundedShape& obstacle) {
 }
 
 std::string fault_of_robot(const JointProblem& problem, std::span<const RoundedShape> obstacles,
-                           std::size_t robot, const std::vector<Vec2>& at) {
+                           std::size_t robot, double speed_limit_mps, const std::vector<Vec2>& at) {
   if ((at.front() - problem.starts_m[robot]).norm() > kDistanceTolerance_m)
     return fmt::format("robot {} does not begin at its start", robot);
   if ((at.back() - problem.goals_m[robot]).norm() > kDistanceTolerance_m)
@@ -65,7 +65,7 @@ std::string fault_of_robot(const JointProblem& problem, std::span<const RoundedS
     const double max_mps2 =
         speeds_up ? problem.limits.acceleration_mps2
                   : std::max(problem.limits.acceleration_mps2, problem.limits.deceleration_mps2);
-    if (v.norm() > problem.limits.speed_mps + kSpeedTolerance_mps)
+    if (v.norm() > speed_limit_mps + kSpeedTolerance_mps)
       return fmt::format("robot {} is too fast after {:.3f} s", robot, t);
     if (a.norm() > max_mps2 + kAccelerationTolerance_mps2)
       return fmt::format("robot {} exceeds its acceleration after {:.3f} s", robot, t);
@@ -76,8 +76,10 @@ std::string fault_of_robot(const JointProblem& problem, std::span<const RoundedS
 }  // namespace
 
 std::string fault_of(const JointProblem& problem, std::span<const Shape> obstacles,
-                     std::span<const Course> courses) {
+                     std::span<const Course> courses, std::span<const double> speed_limits_mps) {
   if (courses.size() != problem.robots()) return "not every robot has a course";
+  if (!speed_limits_mps.empty() && speed_limits_mps.size() != problem.robots())
+    return "not every robot has a speed limit";
   std::vector<RoundedShape> rounded_obstacles;
   for (const Shape& obstacle : obstacles) rounded_obstacles.push_back(rounded(obstacle));
   double end_s = 0;
@@ -86,7 +88,9 @@ std::string fault_of(const JointProblem& problem, std::span<const Shape> obstacl
   std::vector<std::vector<Vec2>> at;
   for (std::size_t robot = 0; robot < courses.size(); ++robot) {
     at.push_back(sampled(courses[robot], samples));
-    const std::string fault = fault_of_robot(problem, rounded_obstacles, robot, at.back());
+    double speed_limit_mps = problem.limits.speed_mps;
+    if (!speed_limits_mps.empty()) speed_limit_mps = std::min(speed_limit_mps, speed_limits_mps[robot]);
+    const std::string fault = fault_of_robot(problem, rounded_obstacles, robot, speed_limit_mps, at.back());
     if (!fault.empty()) return fault;
   }
   const double separation_m = 2 * problem.radius_m + problem.margin_m - kDistanceTolerance_m;

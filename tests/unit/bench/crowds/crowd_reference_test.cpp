@@ -56,6 +56,14 @@ TEST_CASE("a plan with overlapping robots counts as a violation") {
   CHECK(crowd_result_of(scenario, plan).violations == 1);
 }
 
+TEST_CASE("a plan in which a robot exceeds the speed limit of its goal counts as a violation") {
+  Scenario scenario = two_robots();
+  const JointPlan fast = plan_reference(scenario, 1, quick());
+  scenario.robots[1].goals[0].speed_limit_mps = 1;
+  CHECK(crowd_result_of(scenario, fast).violations == 1);
+  CHECK(crowd_result_of(scenario, plan_reference(scenario, 1, quick())).violations == 0);
+}
+
 TEST_CASE("robots with a free way reach the bound") {
   const Scenario scenario = two_robots();
   CHECK(lower_bound_ratio(scenario) == Approx(1).margin(1e-6));

@@ -20,11 +20,12 @@ struct Passing {
     result.append(make_leg(Time{} + from_seconds(0.1), from, to, leg_times((to - from).norm(), limits)));
     return result;
   }
-  std::string fault() const { return fault_of(problem, obstacles, courses); }
+  std::string fault() const { return fault_of(problem, obstacles, courses, speed_limits_mps); }
 
   JointProblem problem;
   std::vector<Shape> obstacles{Circle{{0, 0.5}, 0.2}};
   std::vector<Course> courses;
+  std::vector<double> speed_limits_mps;
 };
 
 TEST_CASE("robots that pass each other at a distance have no fault") { CHECK(Passing().fault() == ""); }
@@ -57,6 +58,19 @@ TEST_CASE("the check of joint plans names every kind of fault") {
   Passing missing;
   missing.courses.pop_back();
   CHECK(missing.fault() == "not every robot has a course");
+}
+
+TEST_CASE("the check of joint plans respects the speed limits of single robots") {
+  Passing limited;
+  limited.speed_limits_mps = {2, 3};
+  CHECK(limited.fault() == "");
+  limited.speed_limits_mps = {2, 1.9};
+  CHECK_THAT(limited.fault(), StartsWith("robot 1 is too fast"));
+  limited.speed_limits_mps = {2};
+  CHECK(limited.fault() == "not every robot has a speed limit");
+  limited.speed_limits_mps = {3, 3};
+  limited.problem.limits.speed_mps = 1.9;
+  CHECK_THAT(limited.fault(), StartsWith("robot 0 is too fast"));
 }
 
 TEST_CASE("the check of joint plans reports a robot that jumps") {
