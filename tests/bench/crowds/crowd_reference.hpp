@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "agents/planning/joint/neighbourhood_planner.hpp"
 #include "common/config/scenario.hpp"
 #include "tests/bench/crowds/crowd_result.hpp"
+#include "tests/bench/crowds/neighbourhood_planner.hpp"
 
 namespace sidestep {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "agents/planning/joint/neighbourhood_planner.hpp"
+#include "tests/bench/crowds/neighbourhood_planner.hpp"
 
 #include <algorithm>
 
