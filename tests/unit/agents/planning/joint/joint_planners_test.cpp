@@ -1,28 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "agents/planning/joint/composite_planner.hpp"
 #include "agents/planning/joint/prioritised_planner.hpp"
 #include "common/motion/validity.hpp"
 #include "tests/catch.hpp"
 #include "tests/study/joint_planning/joint_check.hpp"
-#include "tests/unit/agents/planning/joint/random_course.hpp"
+#include "tests/unit/agents/planning/joint/joint_floor.hpp"
 
 namespace sidestep::joint_planners_test {
 
 const Budget kBudget{20'000, 20'000};
-
-/// Free positions that are at least `apart_m` apart from each other and from the obstacles.
-std::vector<Vec2> places(Rng& rng, const ObstacleWorld& world, std::size_t count) {
-  std::vector<Vec2> result;
-  while (result.size() < count) {
-    const Vec2 place = random_position(rng, 1.3);
-    const bool is_apart =
-        std::ranges::all_of(result, [&](const Vec2& other) { return (place - other).norm() > 0.3; });
-    if (is_apart && !world.touches(place, 0.15)) result.push_back(place);
-  }
-  return result;
-}
 
 template <typename Planner>
 void check_on_random_floors() {
@@ -37,13 +23,9 @@ void check_on_random_floors() {
       else
         obstacles.emplace_back(Box{at, at + Vec2(0.3, 0.1)});
     }
-    const ObstacleWorld world(obstacles);
-    JointProblem problem;
-    problem.world = &world;
-    problem.field = {3, 3};
-    const std::size_t robots = 1 + rng.below(5);
-    problem.starts_m = places(rng, world, robots);
-    problem.goals_m = places(rng, world, robots);
+    JointFloor floor({3, 3}, obstacles);
+    const JointProblem& problem = floor.problem;
+    floor.place_robots(1 + rng.below(5), rng);
     Planner planner, again;
     Rng first(seed), second(seed);
     const JointPlan plan = planner.plan(problem, kBudget, first);
@@ -72,16 +54,11 @@ TEST_CASE("the prioritised planner solves random floors, and an independent chec
 //  | A             B |   A and B change places; only the bay lets them pass.
 //  +-------+  +------+
 //          +--+
-struct BayFloor {
-  BayFloor() {
-    problem.world = &world;
-    problem.field = {3, 0.9};
+struct BayFloor : JointFloor {
+  BayFloor() : JointFloor({3, 0.9}, {Box{{-1.5, -0.45}, {-0.2, 0.15}}, Box{{0.2, -0.45}, {1.5, 0.15}}}) {
     problem.starts_m = {{-1.2, 0.3}, {1.2, 0.3}};
     problem.goals_m = {{1.2, 0.3}, {-1.2, 0.3}};
   }
-  std::vector<Shape> obstacles{Box{{-1.5, -0.45}, {-0.2, 0.15}}, Box{{0.2, -0.45}, {1.5, 0.15}}};
-  ObstacleWorld world{obstacles};
-  JointProblem problem;
 };
 
 TEST_CASE("robots in a corridor use its bay to pass each other") {
@@ -105,29 +82,19 @@ TEST_CASE("prioritised planning fails if the first robot's path leaves no room f
 }
 
 template <typename Planner>
-void check_refusals() {
-  const ObstacleWorld world({Circle{{0, 0}, 0.3}});
-  JointProblem problem;
-  Planner planner;
+void check_planner_refusals() {
   Rng rng(1);
-  CHECK_THROWS_AS(planner.plan(problem, kBudget, rng), std::invalid_argument);
-  problem.world = &world;
-  CHECK_THROWS_AS(planner.plan(problem, kBudget, rng), std::invalid_argument);
-  problem.starts_m = {{1, 0}, {1, 1}};
-  problem.goals_m = {{-1, 0}};
-  CHECK_THROWS_AS(planner.plan(problem, kBudget, rng), std::invalid_argument);
-  problem.goals_m = {{-1, 0}, {-1, 0.1}};
-  CHECK(planner.plan(problem, kBudget, rng).reason == PlanReason::kUnreachable);
-  problem.goals_m = {{-1, 0}, {0, 0.35}};
-  CHECK(planner.plan(problem, kBudget, rng).reason == PlanReason::kUnreachable);
-  problem.goals_m = {{-1, 0}, {-1, 1}};
-  CHECK(planner.plan(problem, Budget{.samples = 0}, rng).reason == PlanReason::kBudgetSpent);
-  CHECK(planner.plan(problem, kBudget, rng).arrives());
+  Planner planner;
+  check_refusals([&](const JointProblem& problem) { return planner.plan(problem, kBudget, rng); });
+  JointFloor floor({}, {Circle{{0, 0}, 0.3}});
+  floor.problem.starts_m = {{1, 0}, {1, 1}};
+  floor.problem.goals_m = {{-1, 0}, {-1, 1}};
+  CHECK(Planner().plan(floor.problem, Budget{.samples = 0}, rng).reason == PlanReason::kBudgetSpent);
 }
 
-TEST_CASE("joint planners refuse invalid problems") {
-  check_refusals<CompositePlanner>();
-  check_refusals<PrioritisedPlanner>();
+TEST_CASE("joint planners refuse invalid problems, and give up if they have no budget") {
+  check_planner_refusals<CompositePlanner>();
+  check_planner_refusals<PrioritisedPlanner>();
 }
 
 }  // namespace sidestep::joint_planners_test
