@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "common/file/write_file.hpp"
+#include "common/process/number_text.hpp"
 #include "common/version/version.hpp"
 #include "deploy/audit/picture/run_picture.hpp"
 #include "tests/bench/crowds/crowd_families.hpp"
@@ -20,8 +21,6 @@
 
 namespace sidestep {
 namespace {
-
-constexpr const char* kSidestep = "sidestep";
 
 /// One way to drive the robots of a scene.
 struct CrowdMethod {
@@ -57,7 +56,7 @@ std::string path_in(const CrowdBenchOptions& options, const std::string& file) {
 
 /// Sidestep; draws the first seed if there is a folder.
 CrowdMethod sidestep_method(const CrowdBenchOptions& options) {
-  return {kSidestep, "", [options](const Scenario& scenario, std::uint64_t seed) {
+  return {kSidestepMethod, "", [options](const Scenario& scenario, std::uint64_t seed) {
             const Report report = drive_crowd(scenario, seed);
             if (!options.folder.empty() && seed == options.seeds.front())
               write_file(path_in(options, scenario.name + ".svg"), run_picture_from(to_json(report)));
@@ -122,7 +121,8 @@ std::vector<CrowdRow> scores_of(const StudyTable& scenes) {
     if (scores.empty() || scores.back().family != row[0] || scores.back().method != row[1] ||
         scores.back().setting != row[2])
       scores.push_back({row[0], row[1], row[2], {}});
-    scores.back().score.add(crowd_result_from(std::span(row).subspan(kKeyColumns)));
+    scores.back().score.add(parsed<std::uint64_t>(row[3]).value(),
+                            crowd_result_from(std::span(row).subspan(kKeyColumns)));
   }
   return scores;
 }
@@ -149,7 +149,7 @@ std::string csv_of(const StudyTable& table, const CrowdBenchOptions& options) {
 }  // namespace
 
 std::vector<std::string> crowd_methods() {
-  std::vector<std::string> names{kSidestep};
+  std::vector<std::string> names{kSidestepMethod};
   for (const CrowdMethod& method : compared_methods())
     if (names.back() != method.name) names.push_back(method.name);
   return names;
@@ -173,7 +173,7 @@ bool bench_crowds(const CrowdBenchOptions& options) {
     fmt::print("{0}/scenes.csv, {0}/crowds.csv, {0}/crowds.png\n", options.folder);
   }
   return std::ranges::all_of(
-      rows, [](const CrowdRow& row) { return row.method != kSidestep || row.score.is_clean(); });
+      rows, [](const CrowdRow& row) { return row.method != kSidestepMethod || row.score.is_clean(); });
 }
 
 }  // namespace sidestep

@@ -2,7 +2,6 @@
 #include "tests/bench/crowds/crowd_score.hpp"
 
 #include <fmt/format.h>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -29,6 +28,14 @@ std::optional<double> known_number_in(const std::string& cell) {
   return cell == kUnknown ? std::nullopt : std::optional(number_in<double>(cell));
 }
 
+/// The values that are known of the complete scenes.
+Distribution known(const CrowdScore& score, std::optional<double> CrowdResult::*value) {
+  Distribution values;
+  for (const auto& [seed, result] : score.complete)
+    if (result.*value) values.add(*(result.*value));
+  return values;
+}
+
 }  // namespace
 
 std::string crowd_result_cells(const CrowdResult& result) {
@@ -44,25 +51,39 @@ CrowdResult crowd_result_from(std::span<const std::string> cells) {
           number_in<double>(cells[6])};
 }
 
-void CrowdScore::add(const CrowdResult& result) {
+void CrowdScore::add(std::uint64_t seed, const CrowdResult& result) {
   ++scenes;
   robots += result.robots;
   arrived += result.arrived;
   contacts += result.contacts;
   violations += result.violations;
-  if (result.ratio) ratio.add(*result.ratio);
-  if (result.makespan_s) makespan_s.add(*result.makespan_s);
+  if (result.arrived == result.robots) complete.emplace(seed, result);
   cpu_us.add(result.cpu_us);
 }
 
+Distribution CrowdScore::ratios() const { return known(*this, &CrowdResult::ratio); }
+
+Distribution CrowdScore::makespans_s() const { return known(*this, &CrowdResult::makespan_s); }
+
+std::optional<double> relative_ratio(const CrowdScore& first, const CrowdScore& second) {
+  Distribution firsts, seconds;
+  for (const auto& [seed, result] : first.complete) {
+    const auto other = second.complete.find(seed);
+    if (other == second.complete.end() || !result.ratio || !other->second.ratio) continue;
+    firsts.add(*result.ratio);
+    seconds.add(*other->second.ratio);
+  }
+  if (firsts.size() == 0) return std::nullopt;
+  return firsts.mean() / seconds.mean();
+}
+
 bool is_better(const CrowdScore& first, const CrowdScore& second) {
-  const auto key = [](const CrowdScore& score) {
-    // The mean of no scenes is 0, which would be the best.
-    const double ratio =
-        score.ratio.size() > 0 ? score.ratio.mean() : std::numeric_limits<double>::infinity();
-    return std::tuple(score.contacts + score.violations, score.robots - score.arrived, ratio);
+  const auto failures = [](const CrowdScore& score) {
+    return std::tuple(score.contacts + score.violations, score.robots - score.arrived, score.incomplete());
   };
-  return key(first) < key(second);
+  if (failures(first) != failures(second)) return failures(first) < failures(second);
+  const auto relative = relative_ratio(first, second);
+  return relative && *relative < 1;
 }
 
 }  // namespace sidestep

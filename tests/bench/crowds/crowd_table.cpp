@@ -4,21 +4,35 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <functional>
+#include <limits>
 #include <optional>
 
 namespace sidestep {
 namespace {
 
-std::string number_or_none(const Distribution& values, double number, int digits) {
-  return values.size() > 0 ? fmt::format("{:.{}f}", number, digits) : "-";
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string mean_cell(const Distribution& values) {
+  return values.size() > 0 ? fmt::format("{:.2f}", values.mean()) : "-";
 }
 
-std::string over_reference(std::span<const CrowdRow> rows, const CrowdRow& row) {
-  const auto reference = std::ranges::find_if(rows, [&](const CrowdRow& other) {
-    return other.family == row.family && other.method == kReferenceMethod;
+/// A quantile of the values of all scenes. `values` are those of the complete ones, all others come after
+/// them.
+std::string quantile_cell(const CrowdScore& score, Distribution values, double fraction) {
+  for (int i = 0; i < score.incomplete(); ++i) values.add(kInfinity);
+  if (values.size() == 0) return "-";
+  const double value = values.quantile(fraction);
+  return value < kInfinity ? fmt::format("{:.2f}", value) : "failed";
+}
+
+/// The ratio of a row over that of another method in the same family.
+std::string over_method(std::span<const CrowdRow> rows, const CrowdRow& row, const char* method) {
+  const auto other = std::ranges::find_if(rows, [&](const CrowdRow& candidate) {
+    return candidate.family == row.family && candidate.method == method;
   });
-  if (reference == rows.end() || reference->score.ratio.size() == 0) return "-";
-  return number_or_none(row.score.ratio, row.score.ratio.mean() / reference->score.ratio.mean(), 2);
+  if (other == rows.end()) return "-";
+  const auto relative = relative_ratio(row.score, other->score);
+  return relative ? fmt::format("{:.2f}", *relative) : "-";
 }
 
 std::vector<std::string> row_cells(std::span<const CrowdRow> rows, const CrowdRow& row) {
@@ -27,16 +41,18 @@ std::vector<std::string> row_cells(std::span<const CrowdRow> rows, const CrowdRo
           row.method,
           row.setting.empty() ? "-" : row.setting,
           fmt::format("{}", score.scenes),
+          fmt::format("{}", score.complete.size()),
           fmt::format("{}", score.robots),
           fmt::format("{}", score.arrived),
           fmt::format("{}", score.contacts),
           fmt::format("{}", score.violations),
-          number_or_none(score.ratio, score.ratio.mean(), 2),
-          number_or_none(score.ratio, score.ratio.quantile(1), 2),
-          number_or_none(score.makespan_s, score.makespan_s.median(), 2),
-          number_or_none(score.makespan_s, score.makespan_s.quantile(1), 2),
+          mean_cell(score.ratios()),
+          quantile_cell(score, score.ratios(), 1),
+          quantile_cell(score, score.makespans_s(), 0.5),
+          quantile_cell(score, score.makespans_s(), 1),
           fmt::format("{:.1f}", score.cpu_us.mean()),
-          over_reference(rows, row)};
+          over_method(rows, row, kSidestepMethod),
+          over_method(rows, row, kReferenceMethod)};
 }
 
 /// The names in the rows, each once, in the order of the rows.
@@ -45,6 +61,21 @@ std::vector<std::string> names_in(std::span<const CrowdRow> rows, std::string Cr
   for (const CrowdRow& row : rows)
     if (std::ranges::find(names, row.*name) == names.end()) names.push_back(row.*name);
   return names;
+}
+
+/// The rows with only those complete scenes that all methods of the family completed. Methods without a
+/// complete scene do not count.
+std::vector<CrowdRow> rows_of_shared_scenes(std::span<const CrowdRow> rows) {
+  std::vector<CrowdRow> shared(rows.begin(), rows.end());
+  for (CrowdRow& row : shared) {
+    std::erase_if(row.score.complete, [&](const auto& scene) {
+      return std::ranges::any_of(rows, [&](const CrowdRow& other) {
+        return other.family == row.family && !other.score.complete.empty() &&
+               !other.score.complete.contains(scene.first);
+      });
+    });
+  }
+  return shared;
 }
 
 /// What a plot shows of a score: the height of its bar and its extremes; nullopt: nothing.
@@ -84,12 +115,14 @@ Plot plot_of(std::span<const CrowdRow> rows, const std::string& title, const std
 
 /// The plots, except those that would be empty.
 std::vector<Plot> plots_of(std::span<const CrowdRow> rows) {
+  const std::vector<CrowdRow> shared = rows_of_shared_scenes(rows);
   std::vector<Plot> plots{
-      plot_of(rows, "arrival: mean of the scenes, with extremes", "over the straight line",
-              [](const CrowdScore& score) { return bar_with_extremes(score.ratio, score.ratio.mean()); }),
-      plot_of(rows, "makespan: median, with extremes", "time [s]",
+      plot_of(
+          shared, "arrival, shared scenes: mean, with extremes", "over the straight line",
+          [](const CrowdScore& score) { return bar_with_extremes(score.ratios(), score.ratios().mean()); }),
+      plot_of(shared, "makespan, shared scenes: median, with extremes", "time [s]",
               [](const CrowdScore& score) {
-                return bar_with_extremes(score.makespan_s, score.makespan_s.median());
+                return bar_with_extremes(score.makespans_s(), score.makespans_s().median());
               }),
       plot_of(rows, "robots that do not arrive", "per scene",
               [](const CrowdScore& score) { return bar_per_scene(score.robots - score.arrived, score); }),
@@ -109,9 +142,10 @@ std::vector<Plot> plots_of(std::span<const CrowdRow> rows) {
 StudyTable crowd_table(std::span<const CrowdRow> rows) {
   StudyTable table;
   table.name = "crowds";
-  table.columns = {"family",     "method",           "setting",    "scenes",        "robots",
-                   "arrived",    "contacts",         "violations", "ratio",         "worst_ratio",
-                   "makespan_s", "worst_makespan_s", "cpu_us",     "over_reference"};
+  table.columns = {"family",           "method", "setting",       "scenes",
+                   "complete",         "robots", "arrived",       "contacts",
+                   "violations",       "ratio",  "worst_ratio",   "makespan_s",
+                   "worst_makespan_s", "cpu_us", "over_sidestep", "over_reference"};
   for (const CrowdRow& row : rows) table.rows.push_back(row_cells(rows, row));
   table.plots = plots_of(rows);
   return table;

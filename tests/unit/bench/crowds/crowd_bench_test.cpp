@@ -53,7 +53,7 @@ TEST_CASE("the benchmark of crowds writes its tables, its plots and a picture of
   options.seeds = {1, 2};
   options.folder = folder.path();
   CHECK(bench_crowds(options));
-  CHECK(read_file(folder.file("crowds.csv"), kMaxBytes).find("crossing-streams,sidestep,-,2,20,20,0,0,") !=
+  CHECK(read_file(folder.file("crowds.csv"), kMaxBytes).find("crossing-streams,sidestep,-,2,2,20,20,0,0,") !=
         std::string::npos);
   CHECK(read_file(folder.file("scenes.csv"), kMaxBytes).find("crossing-streams,reciprocal,") !=
         std::string::npos);

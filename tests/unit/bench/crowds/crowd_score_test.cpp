@@ -42,9 +42,10 @@ TEST_CASE("damaged cells of a crowd result are rejected") {
   CHECK_THROWS_AS(crowd_result_from(split("8,8,0,0,nan,3.4,1")), std::invalid_argument);
 }
 
+/// The score of results of the seeds 1, 2, ...
 CrowdScore score_of(const std::vector<CrowdResult>& results) {
   CrowdScore score;
-  for (const CrowdResult& result : results) score.add(result);
+  for (std::uint64_t seed = 1; seed <= results.size(); ++seed) score.add(seed, results[seed - 1]);
   return score;
 }
 
@@ -61,8 +62,9 @@ TEST_CASE(
   CHECK(score.scenes == 2);
   CHECK(score.robots == 16);
   CHECK(score.arrived == 15);
-  CHECK(score.ratio.size() == 1);
-  CHECK(score.makespan_s.size() == 1);
+  CHECK(score.incomplete() == 1);
+  CHECK(score.ratios().size() == 1);
+  CHECK(score.makespans_s().size() == 1);
   CHECK(score.cpu_us.mean() == 3);
 }
 
@@ -77,10 +79,29 @@ TEST_CASE(
   CHECK(is_better(faster, clean));
   CHECK_FALSE(is_better(clean, faster));
   CHECK_FALSE(is_better(clean, clean));
-  // Without a scene in which all robots arrive, there is no ratio.
-  const CrowdScore once_stuck = score_of({{8, 7, 0, 0, {}, {}, 1}, {8, 8, 0, 0, 1.4, 5, 1}});
-  CHECK(is_better(once_stuck, stuck));
-  CHECK_FALSE(is_better(stuck, once_stuck));
+}
+
+TEST_CASE("a crowd score without a complete scene never wins by its ratio") {
+  const CrowdScore stuck_in_both = score_of({{8, 7, 0, 0, {}, {}, 1}, {8, 7, 0, 0, {}, {}, 1}});
+  const CrowdScore stuck_in_one = score_of({{8, 6, 0, 0, {}, {}, 1}, {8, 8, 0, 0, 1.4, 5, 1}});
+  CHECK(stuck_in_both.arrived == stuck_in_one.arrived);
+  CHECK(is_better(stuck_in_one, stuck_in_both));
+  CHECK_FALSE(is_better(stuck_in_both, stuck_in_one));
+  CHECK_FALSE(is_better(stuck_in_both, stuck_in_both));
+  CHECK_FALSE(relative_ratio(stuck_in_both, stuck_in_one));
+}
+
+TEST_CASE("the ratios of two crowd scores are compared over the scenes that both completed") {
+  const CrowdScore fails_hard = score_of({{8, 8, 0, 0, 1.5, 3, 1}, {8, 7, 0, 0, {}, {}, 1}});
+  const CrowdScore fails_easy = score_of({{8, 7, 0, 0, {}, {}, 1}, {8, 8, 0, 0, 4.0, 9, 1}});
+  const CrowdScore fast = score_of({{8, 8, 0, 0, 1.2, 3, 1}, {8, 8, 0, 0, 4.0, 9, 1}});
+  REQUIRE(relative_ratio(fails_hard, fast));
+  CHECK(*relative_ratio(fails_hard, fast) == Approx(1.25));
+  CHECK(*relative_ratio(fails_easy, fast) == Approx(1));
+  // No scene tells which of these is faster.
+  CHECK_FALSE(relative_ratio(fails_hard, fails_easy));
+  CHECK_FALSE(is_better(fails_hard, fails_easy));
+  CHECK_FALSE(is_better(fails_easy, fails_hard));
 }
 
 }  // namespace sidestep::crowd_score_test
