@@ -16,8 +16,8 @@ std::string mean_cell(const Distribution& values) {
   return values.size() > 0 ? fmt::format("{:.2f}", values.mean()) : "-";
 }
 
-/// A quantile of the values of all scenes. `values` are those of the complete ones, all others come after
-/// them.
+/// A quantile of the values of all scenes. `values` are those of the complete ones; an incomplete scene is
+/// worse than all of them.
 std::string quantile_cell(const CrowdScore& score, Distribution values, double fraction) {
   for (int i = 0; i < score.incomplete(); ++i) values.add(kInfinity);
   if (values.size() == 0) return "-";

@@ -22,10 +22,10 @@ inline constexpr const char* kSidestepMethod = "sidestep";
 inline constexpr const char* kReferenceMethod = "reference";
 
 /// The table of the benchmark, a row for each family and method. Its columns `over_sidestep` and
-/// `over_reference` are the relative_ratio() of a method and Sidestep or the reference in the same family. In
-/// the median and the worst values, incomplete scenes count as later than all others: a cell is "failed" if
-/// its scene is incomplete. The plots of arrival and makespan show the scenes that all methods completed; a
-/// method that completed none in a family has no bar there.
+/// `over_reference` are the relative_ratio() of a method and Sidestep or the reference in the same family.
+/// For the median and the worst values, an incomplete scene is worse than every complete one; a cell that
+/// falls on one says "failed". The plots of arrival and makespan show the scenes that all methods completed;
+/// a method that completed none in a family has no bar there.
 [[nodiscard]] StudyTable crowd_table(std::span<const CrowdRow> rows);
 
 }  // namespace sidestep
