@@ -99,6 +99,36 @@ double check_ending(LaunchedRun& run, const std::string& ending) {
   return reported["duration_s"].get<double>();
 }
 
+/// Sends a second Ctrl-C while robots come to rest, and checks how the run ends. Returns whether robots still
+/// moved when the second one was handled; on a busy machine they may rest before that.
+bool check_second_interrupt() {
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"));
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
+  const pid_t robots = run.pid_of("robots");
+  ProcessEnds ends(run);
+  REQUIRE(kill(run.pid(), SIGINT) == 0);
+  REQUIRE(run.wait_until([&] { return run.printed("interrupted: all robots come to rest"); }));
+  // A SIGINT that follows the first one too soon is the same request.
+  CHECK(run.wait_until([&] {
+    kill(run.pid(), SIGINT);
+    return ends.observe();
+  }));
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  const bool were_moving = run.printed("ends at once: robot");
+  const std::string problem = json_text(ending_of(run)["problem"]);
+  CHECK_THAT(problem, ContainsSubstring(were_moving ? "ended by a second Ctrl-C: robot" : "null"));
+  CHECK_FALSE(is_running(run.pid_of("vision")));
+  // The process that drives bases still brings them to rest, as if it had been asked alone.
+  const Time deadline = run.bus().now() + 10s;
+  while (is_running(robots) && run.bus().now() < deadline) run.bus().run_until(run.bus().now() + 2ms);
+  CHECK_FALSE(is_running(robots));
+  CHECK(run.max_speed_mps() < kAtRest_mps);
+  CHECK(run.truth().contacts() == 0);
+  return were_moving;
+}
+
 }  // namespace
 
 TEST_CASE("at the time limit and at Ctrl-C, all robots rest before any process of the run ends") {
@@ -209,29 +239,12 @@ TEST_CASE("after SIGKILL of the process that drives bases, the run is judged unt
 }
 
 TEST_CASE("a second Ctrl-C ends a run at once and names the robots that still move", "[both-cores]") {
-  ExternalSimulatorRun floor(shipped_scenario("league/crossing"));
-  LaunchedRun& run = floor.run();
-  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > kDriving_mps; }));
-  const pid_t robots = run.pid_of("robots");
-  ProcessEnds ends(run);
-  REQUIRE(kill(run.pid(), SIGINT) == 0);
-  REQUIRE(run.wait_until([&] { return run.printed("interrupted: all robots come to rest"); }));
-  // A SIGINT that follows the first one too soon is the same request.
-  CHECK(run.wait_until([&] {
-    kill(run.pid(), SIGINT);
-    return ends.observe();
-  }));
-  CHECK(run.wait_for_end() == "exit code 1");
-  INFO(run.output());
-  CHECK(run.printed("ends at once: robot"));
-  CHECK_THAT(json_text(ending_of(run)["problem"]), ContainsSubstring("ended by a second Ctrl-C: robot"));
-  CHECK_FALSE(is_running(run.pid_of("vision")));
-  // The process that drives bases still brings them to rest, as if it had been asked alone.
-  const Time deadline = run.bus().now() + 10s;
-  while (is_running(robots) && run.bus().now() < deadline) run.bus().run_until(run.bus().now() + 2ms);
-  CHECK_FALSE(is_running(robots));
-  CHECK(run.max_speed_mps() < kAtRest_mps);
-  CHECK(run.truth().contacts() == 0);
+  bool were_moving = false;
+  for (int attempt = 1; attempt <= 5 && !were_moving; ++attempt) {
+    CAPTURE(attempt);
+    were_moving = check_second_interrupt();
+  }
+  CHECK(were_moving);
 }
 
 }  // namespace sidestep::run_end_test
