@@ -2,9 +2,11 @@
 #include "tests/faults/launched_run.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <ios>
 #include <sstream>
 
 #include "common/geometry/vec2.hpp"
@@ -23,6 +25,16 @@ std::filesystem::path new_folder() {
   std::string name = (std::filesystem::temp_directory_path() / "sidestep-run-XXXXXX").string();
   if (!mkdtemp(name.data())) throw std::runtime_error("cannot create a temporary folder");
   return name;
+}
+
+/// A file of a process in /proc; empty if the process has ended, even while the file is read.
+std::string process_text(pid_t pid, const std::string& name) {
+  try {
+    return text_of("/proc/" + std::to_string(pid) + "/" + name);
+  } catch (const std::ios_base::failure& failure) {
+    if (failure.code().value() == ESRCH) return "";
+    throw;
+  }
 }
 
 }  // namespace
@@ -156,11 +168,11 @@ std::map<std::string, pid_t> LaunchedRun::children() const {
 }
 
 pid_t LaunchedRun::director() const {
-  const std::string process = "/proc/" + std::to_string(pid_);
-  std::istringstream children(text_of(process + "/task/" + std::to_string(pid_) + "/children"));
-  for (pid_t child = 0; children >> child;) {
+  const std::string command = process_text(pid_, "cmdline");
+  std::istringstream children(process_text(pid_, "task/" + std::to_string(pid_) + "/children"));
+  for (pid_t child = 0; !command.empty() && children >> child;) {
     // The director is the same program with the same arguments.
-    if (text_of("/proc/" + std::to_string(child) + "/cmdline") == text_of(process + "/cmdline")) return child;
+    if (process_text(child, "cmdline") == command) return child;
   }
   return 0;
 }
@@ -264,7 +276,7 @@ void require_no_violations(const nlohmann::json& report) {
 }
 
 bool is_running(pid_t pid) {
-  const std::string stat = text_of("/proc/" + std::to_string(pid) + "/stat");
+  const std::string stat = process_text(pid, "stat");
   const auto after_name = stat.rfind(") ");
   return after_name != std::string::npos && stat[after_name + 2] != 'Z';
 }

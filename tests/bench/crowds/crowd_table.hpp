@@ -23,9 +23,9 @@ inline constexpr const char* kReferenceMethod = "reference";
 
 /// The table of the benchmark, a row for each family and method. Its columns `over_sidestep` and
 /// `over_reference` are the relative_ratio() of a method and Sidestep or the reference in the same family.
-/// For the median and the worst values, an incomplete scene is worse than every complete one; a cell that
-/// falls on one says "failed". The plots of arrival and makespan show the scenes that all methods completed;
-/// a method that completed none in a family has no bar there.
+/// An incomplete scene is worse than every complete one. If the median or the worst scene is incomplete, the
+/// cell of its value says "failed". The plots of arrival and makespan show the scenes that all methods
+/// completed; a method that completed none in a family has no bar there.
 [[nodiscard]] StudyTable crowd_table(std::span<const CrowdRow> rows);
 
 }  // namespace sidestep
