@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <queue>
 
 namespace sidestep {
 namespace {
@@ -35,24 +34,58 @@ constexpr std::array<CellMove, 16> kMoves{{{1, 0},
                                            {-1, 2},
                                            {-1, -2}}};
 
+constexpr std::size_t kMaxTiles = 4096;  ///< number of tiles that are remembered, each of a square metre
+
+std::int64_t cell_number(double x_m) { return static_cast<std::int64_t>(std::floor(x_m / kTimeCell_m)); }
+
+Vec2 cell_centre_m(std::int64_t column, std::int64_t row) {
+  return kTimeCell_m * Vec2(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+}
+
+std::int64_t floor_div(std::int64_t a, std::int64_t b) { return (a >= 0 ? a : a - b + 1) / b; }
+
 }  // namespace
 
-TimeToGoalField::TimeToGoalField(const JointProblem& problem) : problem_(&problem) {
-  columns_ = static_cast<std::size_t>(std::ceil(problem.field.length_m / kTimeCell_m)) + 2 * kCellsPerStep;
-  rows_ = static_cast<std::size_t>(std::ceil(problem.field.width_m / kTimeCell_m)) + 2 * kCellsPerStep;
-  origin_m_ = -kTimeCell_m / 2 * Vec2(static_cast<double>(columns_ - 1), static_cast<double>(rows_ - 1));
-  is_blocked_.resize(columns_ * rows_);
-  near_.resize(is_blocked_.size());
-  wide_.resize(is_blocked_.size());
-  const double distance_m = problem.distance_from_obstacles_m();
-  for (std::size_t cell = 0; cell < is_blocked_.size(); ++cell) {
-    const std::size_t column = cell % columns_, row = cell / columns_;
-    const bool is_border = column < kCellsPerStep || column >= columns_ - kCellsPerStep ||
-                           row < kCellsPerStep || row >= rows_ - kCellsPerStep;
-    const Vec2 at = centre_m(cell);
-    is_blocked_[cell] =
-        is_border || !problem.field.contains(at, distance_m) || problem.world->touches(at, distance_m);
+const TimeToGoalField::Tile& TimeToGoalField::tile(std::int64_t column, std::int64_t row) {
+  if (tiles_.size() >= kMaxTiles) tiles_.clear();
+  const auto [entry, is_new] = tiles_.try_emplace((column << 32) + row);
+  if (!is_new) return entry->second;
+  const double distance_m = problem_->distance_from_obstacles_m();
+  for (std::int64_t i = 0; i < kTileCells * kTileCells; ++i) {
+    const Vec2 at = cell_centre_m(column * kTileCells + i % kTileCells, row * kTileCells + i / kTileCells);
+    entry->second[static_cast<std::size_t>(i)] =
+        !problem_->field.contains(at, distance_m) || problem_->world->touches(at, distance_m) ? kNever
+                                                                                              : Ms{0};
   }
+  return entry->second;
+}
+
+void TimeToGoalField::set_area(const Box& area_m) {
+  constexpr auto kBorder = static_cast<std::int64_t>(kCellsPerStep);
+  const auto first_column = cell_number(area_m.min_m.x()) - kBorder,
+             first_row = cell_number(area_m.min_m.y()) - kBorder,
+             last_column = cell_number(area_m.max_m.x()) + kBorder,
+             last_row = cell_number(area_m.max_m.y()) + kBorder;
+  columns_ = static_cast<std::size_t>(last_column - first_column + 1);
+  rows_ = static_cast<std::size_t>(last_row - first_row + 1);
+  origin_m_ = cell_centre_m(first_column, first_row);
+  least_.assign(columns_ * rows_, kNever);
+  near_.resize(least_.size());
+  wide_.resize(least_.size());
+  for (std::int64_t tile_row = floor_div(first_row, kTileCells); tile_row <= floor_div(last_row, kTileCells);
+       ++tile_row)
+    for (std::int64_t tile_column = floor_div(first_column, kTileCells);
+         tile_column <= floor_div(last_column, kTileCells); ++tile_column) {
+      const Tile& cells = tile(tile_column, tile_row);
+      const std::int64_t column0 = tile_column * kTileCells, row0 = tile_row * kTileCells;
+      const std::int64_t begin = std::max(column0, first_column + kBorder),
+                         end = std::min(column0 + kTileCells, last_column - kBorder + 1);
+      for (std::int64_t row = std::max(row0, first_row + kBorder);
+           row < std::min(row0 + kTileCells, last_row - kBorder + 1) && begin < end; ++row)
+        std::copy_n(cells.begin() + (row - row0) * kTileCells + (begin - column0), end - begin,
+                    least_.begin() + (row - first_row) * static_cast<std::int64_t>(columns_) +
+                        (begin - first_column));
+    }
 }
 
 Vec2 TimeToGoalField::centre_m(std::size_t cell) const {
@@ -81,70 +114,81 @@ void TimeToGoalField::block(const Vec2& at_m, Ms* times) const {
                 [&](std::size_t cell, double) { times[cell] = kNever; });
 }
 
-void TimeToGoalField::compute(const Vec2& goal_m, double speed_mps,
-                              std::span<const SampledCourse* const> others) {
+void TimeToGoalField::compute(const Box& area_m, const Vec2& goal_m, double speed_mps,
+                              std::span<const TimedPositions> others) {
+  set_area(area_m);
   goal_m_ = goal_m;
   speed_mps_ = speed_mps;
   step_s_ = kCellsPerStep * kTimeCell_m / speed_mps;
-  double end_s = 0, goal_free_s = 0;  // from goal_free_s on, no other robot comes too close to the goal
+  double last_s = 0, goal_free_s = 0;  // from goal_free_s on, no other robot comes too close to the goal
   const double separation_m = problem_->min_separation_m();
-  for (const SampledCourse* other : others) {
-    end_s = std::max(end_s, other->arrival_s());
-    for (std::size_t sample = 0; sample < other->samples_m.size(); ++sample)
-      if ((other->samples_m[sample] - goal_m).norm() < separation_m)
+  for (const TimedPositions& other : others) {
+    last_s = std::max(last_s, other.end_s());
+    for (std::size_t sample = 0; sample < other.at_m.size(); ++sample)
+      if ((other.at_m[sample] - goal_m).squaredNorm() < separation_m * separation_m)
         goal_free_s = std::max(goal_free_s, kCourseSample_s * static_cast<double>(sample + 1));
   }
-  last_ = static_cast<std::size_t>(std::ceil(end_s / step_s_));
-  times_.resize((last_ + 1) * is_blocked_.size());
+  last_ = static_cast<std::size_t>(std::ceil(last_s / step_s_));
+  times_.resize((last_ + 1) * least_.size());
+  computed_cells_ += times_.size();
   compute_last(others);
   for (std::size_t step = last_; step-- > 0;) {
-    Ms* times = times_.data() + step * is_blocked_.size();
-    step_back(times + is_blocked_.size(), times);
+    Ms* times = times_.data() + step * least_.size();
+    step_back(times + least_.size(), times);
     const double t_s = static_cast<double>(step) * step_s_;
     if (t_s >= goal_free_s)
       for_each_near(goal_m_, 2 * kTimeCell_m, [&](std::size_t cell, double distance_m) {
         times[cell] = std::min(times[cell], static_cast<Ms>(1e3 * distance_m / speed_mps_));
       });
     const auto sample = static_cast<std::size_t>(std::lround(t_s / kCourseSample_s));
-    for (const SampledCourse* other : others) block(other->at(sample), times);
-    for (std::size_t cell = 0; cell < is_blocked_.size(); ++cell)
-      if (is_blocked_[cell]) times[cell] = kNever;
+    for (const TimedPositions& other : others)
+      if (other.is_known(sample)) block(other.at(sample), times);
+    std::ranges::transform(std::span(times, least_.size()), least_, times, std::ranges::max);
   }
 }
 
-void TimeToGoalField::compute_last(std::span<const SampledCourse* const> others) {
+void TimeToGoalField::compute_last(std::span<const TimedPositions> others) {
   // A cell with kNever is blocked here; all others are not reached yet.
   constexpr Ms kOpen = kNever - 1;
-  Ms* times = times_.data() + last_ * is_blocked_.size();
-  std::fill_n(times, is_blocked_.size(), kOpen);
-  for (const SampledCourse* other : others) block(other->samples_m.back(), times);
-  for (std::size_t cell = 0; cell < is_blocked_.size(); ++cell)
-    if (is_blocked_[cell]) times[cell] = kNever;
-  using Entry = std::pair<Ms, std::uint32_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  Ms* times = times_.data() + last_ * least_.size();
+  std::fill_n(times, least_.size(), kOpen);
+  for (const TimedPositions& other : others)
+    if (other.stays) block(other.at_m.back(), times);
+  std::ranges::transform(std::span(times, least_.size()), least_, times, std::ranges::max);
+  // A queue with one bucket per millisecond (Dial, 1969). No move takes longer than its buckets last.
+  std::array<double, kMoves.size()> moves_ms;
+  for (std::size_t i = 0; i < kMoves.size(); ++i)
+    moves_ms[i] = 1e3 * kTimeCell_m * std::hypot(kMoves[i].columns, kMoves[i].rows) / speed_mps_;
+  const double longest_ms = std::max(std::ranges::max(moves_ms), 2e3 * kTimeCell_m / speed_mps_);
+  buckets_.resize(static_cast<std::size_t>(longest_ms) + 2);
+  std::size_t waiting = 0;
   const auto relax = [&](std::size_t cell, double ms) {
     if (times[cell] == kNever || ms >= times[cell]) return;
     times[cell] = static_cast<Ms>(ms);
-    queue.emplace(times[cell], static_cast<std::uint32_t>(cell));
+    buckets_[static_cast<std::size_t>(ms) % buckets_.size()].push_back(static_cast<std::uint32_t>(cell));
+    ++waiting;
   };
   for_each_near(goal_m_, 2 * kTimeCell_m,
                 [&](std::size_t cell, double distance_m) { relax(cell, 1e3 * distance_m / speed_mps_); });
-  while (!queue.empty()) {
-    const auto [ms, cell] = queue.top();
-    queue.pop();
-    if (ms > times[cell]) continue;
-    for (const CellMove& move : kMoves) {
-      const std::ptrdiff_t offset = move.rows * static_cast<std::ptrdiff_t>(columns_) + move.columns;
-      const double length_m = kTimeCell_m * std::sqrt(move.columns * move.columns + move.rows * move.rows);
-      relax(static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + offset),
-            ms + 1e3 * length_m / speed_mps_);
+  for (std::size_t ms = 0; waiting > 0; ++ms) {
+    std::vector<std::uint32_t>& bucket = buckets_[ms % buckets_.size()];
+    for (std::size_t i = 0; i < bucket.size(); ++i, --waiting) {
+      const std::size_t cell = bucket[i];
+      if (times[cell] != static_cast<Ms>(ms)) continue;  // reached earlier by another way
+      for (std::size_t k = 0; k < kMoves.size(); ++k) {
+        const std::ptrdiff_t offset =
+            kMoves[k].rows * static_cast<std::ptrdiff_t>(columns_) + kMoves[k].columns;
+        relax(static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + offset),
+              static_cast<double>(ms) + moves_ms[k]);
+      }
     }
+    bucket.clear();
   }
-  std::replace(times, times + is_blocked_.size(), kOpen, kNever);
+  std::replace(times, times + least_.size(), kOpen, kNever);
 }
 
 void TimeToGoalField::step_back(const Ms* later, Ms* times) {
-  const std::size_t cells = is_blocked_.size();
+  const std::size_t cells = least_.size();
   for (std::size_t i = 1; i + 1 < cells; ++i)
     near_[i] = std::min(later[i], std::min(later[i - 1], later[i + 1]));
   for (std::size_t i = 2; i + 2 < cells; ++i) wide_[i] = std::min(near_[i - 1], near_[i + 1]);
@@ -161,7 +205,7 @@ void TimeToGoalField::step_back(const Ms* later, Ms* times) {
 
 double TimeToGoalField::time_to_goal_s(const Vec2& at_m, double t_s) const {
   const std::size_t step = std::min(static_cast<std::size_t>(std::lround(t_s / step_s_)), last_);
-  const Ms* times = times_.data() + step * is_blocked_.size();
+  const Ms* times = times_.data() + step * least_.size();
   const Vec2 place = (at_m - origin_m_) / kTimeCell_m;
   // A position outside the grid is blocked.
   if (!(place.x() >= 0 && place.y() >= 0)) return kNever_s;

@@ -82,12 +82,12 @@ bool NeighbourhoodPlanner::plan_alone(BeamPlanner& planner, Rng& rng) {
 }
 
 bool NeighbourhoodPlanner::plan_robot(std::size_t robot, double latest_s, BeamPlanner& planner, Rng& rng) {
-  std::vector<const SampledCourse*> others;
+  std::vector<TimedPositions> others;
   std::vector<Vec2> waiting_m;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     if (i == robot) continue;
     if (robots_[i].is_planned)
-      others.push_back(&robots_[i].course);
+      others.push_back(robots_[i].course.positions());
     else
       waiting_m.push_back(robots_[i].query.start_m);
   }
