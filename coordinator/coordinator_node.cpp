@@ -32,6 +32,7 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const FloorSpec& floor, const Coordin
       coordinator_(floor_rules(floor), roster_of(floor), failover_.epoch(), max_clock_difference_,
                    floor.cycle),
       order_service_(bus, floor, self, coordinator_, events_, [this] { publish_state(); }),
+      course_relay_(bus, self, coordinator_, floor.cycle),
       counters_(bus, process_of(self.number), self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
@@ -95,6 +96,7 @@ void CoordinatorNode::count_drops(DropCounters& drops) const {
   drops.add(drops_);
   drops.add(coordinator_.drops());
   drops.add(order_service_.drops());
+  drops.add(course_relay_.drops());
   drops.count(DropReason::kImplausibleEpoch, std::nullopt, failover_.invalid());
   drops.count(DropReason::kFrequentEpoch, std::nullopt, failover_.too_frequent());
 }

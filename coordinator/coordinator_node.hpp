@@ -11,14 +11,15 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "coordinator/coordinator.hpp"
 #include "coordinator/coordinator_event_logger.hpp"
+#include "coordinator/course_relay.hpp"
 #include "coordinator/failover.hpp"
 #include "coordinator/order_service.hpp"
 
 namespace sidestep {
 
 /// Connects a coordinator to the bus: decodes messages and counts invalid messages, answers proposals and
-/// registrations immediately, publishes the ledger every cycle and heartbeats, and takes over from other
-/// coordinators.
+/// registrations immediately, publishes the ledger every cycle and heartbeats, relays courses, and takes over
+/// from other coordinators.
 class CoordinatorNode {
  public:
   CoordinatorNode(Bus& bus, const FloorSpec& floor, const CoordinatorIdentity& self, bool is_standby);
@@ -72,6 +73,7 @@ class CoordinatorNode {
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
   EventReporter events_;
   OrderService order_service_;
+  CourseRelay course_relay_;
   CoordinatorEventLogger event_logger_{events_};
   std::map<RobotId, Time> heard_at_;            // arrival time of each robot's last fact
   Time updated_at_{};                           // when update_failover() last ran

@@ -12,6 +12,7 @@
 #include "common/messaging/cdr.hpp"
 #include "common/protocol/roles.hpp"
 #include "idl/clock.hpp"
+#include "idl/course.hpp"
 #include "idl/disturbance.hpp"
 #include "idl/laser.hpp"
 #include "idl/monitor.hpp"
@@ -152,6 +153,20 @@ inline constexpr Topic<msg::OrderMemory> kAgentOrders{
 inline constexpr Topic<msg::OrderStatus> kOrderStatus{
     {"order_status", Role::kAgent, Role::kCoordinator | Role::kClient | Role::kReferee | kWatchers,
      Qos::kState, false, true, message_type<msg::OrderStatus>("sidestep::msg::OrderStatus")}};
+inline constexpr Topic<msg::Course> kCourse{
+    {"course", Role::kAgent, Role::kCoordinator | kWatchers, Qos::kState, false, true,
+     message_type<msg::Course>("sidestep::msg::Course", msg::MAX_COURSE_POINTS)}};
+inline constexpr Topic<msg::CourseOffer> kCourseOffer{
+    {"course_offer", Role::kAgent, Role::kCoordinator | kWatchers, Qos::kState, false, true,
+     message_type<msg::CourseOffer>("sidestep::msg::CourseOffer", msg::MAX_COURSE_POINTS)}};
+/// Courses and offers that the active coordinator has relayed, so that agents need not discover each other's
+/// endpoints.
+inline constexpr Topic<msg::Course> kSharedCourse{
+    {"shared_course", Role::kCoordinator, Role::kAgent | kWatchers, Qos::kState, false, true,
+     message_type<msg::Course>("sidestep::msg::Course", msg::MAX_COURSE_POINTS)}};
+inline constexpr Topic<msg::CourseOffer> kSharedCourseOffer{
+    {"shared_course_offer", Role::kCoordinator, Role::kAgent | kWatchers, Qos::kState, false, true,
+     message_type<msg::CourseOffer>("sidestep::msg::CourseOffer", msg::MAX_COURSE_POINTS)}};
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", Role::kAgent, kWatchers, Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
@@ -209,6 +224,10 @@ void for_each_topic(Visitor visit) {
   visit(topics::kOrderMemory);
   visit(topics::kAgentOrders);
   visit(topics::kOrderStatus);
+  visit(topics::kCourse);
+  visit(topics::kCourseOffer);
+  visit(topics::kSharedCourse);
+  visit(topics::kSharedCourseOffer);
   visit(topics::kDisturbance);
   visit(topics::kDisturbanceAnswer);
   visit(topics::kNetworkFault);

@@ -42,7 +42,7 @@ PeerOutcome run_peer(const std::string& arguments) {
   return outcome;
 }
 
-/// Publishes random messages of five topics in its own thread, from construction to destruction.
+/// Publishes random messages of seven topics in its own thread, from construction to destruction.
 class RandomPublisher {
  public:
   RandomPublisher() : bus_(test_settings("publisher")) {
@@ -58,6 +58,8 @@ class RandomPublisher {
     add(topics::kLedger, 0, [](auto&) {});
     add(topics::kWorld, 0, [](auto&) {});
     add(topics::kTruth, 0, [](auto&) {});
+    add(topics::kCourse, 0, robot);
+    add(topics::kCourseOffer, 0, robot);
     tick();
     thread_ = std::thread([this] { bus_.run(); });
   }
@@ -97,7 +99,7 @@ class RandomPublisher {
 
 }  // namespace
 
-TEST_CASE("a Cyclone DDS program decodes every field of messages on five topics") {
+TEST_CASE("a Cyclone DDS program decodes every field of messages on seven topics") {
   RandomPublisher publisher;
   const PeerOutcome outcome = run_peer(fmt::format("read {} 3 20", test_settings().domain));
   publisher.stop();
@@ -115,8 +117,13 @@ TEST_CASE("a Cyclone DDS program decodes every field of messages on five topics"
     require_same_fields(described, fields);
     ++read[channel];
   }
-  CHECK(read == std::map<std::string, int>{
-                    {"feedback/3", 20}, {"ledger", 20}, {"truth", 20}, {"verdict/3", 20}, {"world", 20}});
+  CHECK(read == std::map<std::string, int>{{"course", 20},
+                                           {"course_offer", 20},
+                                           {"feedback/3", 20},
+                                           {"ledger", 20},
+                                           {"truth", 20},
+                                           {"verdict/3", 20},
+                                           {"world", 20}});
 }
 
 TEST_CASE("a robot obeys the order of a Cyclone DDS program") {

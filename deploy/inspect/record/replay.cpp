@@ -10,14 +10,23 @@ namespace sidestep {
 namespace {
 
 /// The topics that agents, coordinators, robots and operators write.
-constexpr std::array kCommanding = {
-    std::string_view(topics::kCommand.name),      std::string_view(topics::kFeedback.name),
-    std::string_view(topics::kRegistration.name), std::string_view(topics::kProposal.name),
-    std::string_view(topics::kVerdict.name),      std::string_view(topics::kLedger.name),
-    std::string_view(topics::kCoordinator.name),  std::string_view(topics::kAttestation.name),
-    std::string_view(topics::kOrder.name),        std::string_view(topics::kOrderMemory.name),
-    std::string_view(topics::kAgentOrders.name),  std::string_view(topics::kDisturbance.name),
-    std::string_view(topics::kNetworkFault.name)};
+constexpr std::array kCommanding = {std::string_view(topics::kCommand.name),
+                                    std::string_view(topics::kFeedback.name),
+                                    std::string_view(topics::kRegistration.name),
+                                    std::string_view(topics::kProposal.name),
+                                    std::string_view(topics::kVerdict.name),
+                                    std::string_view(topics::kLedger.name),
+                                    std::string_view(topics::kCoordinator.name),
+                                    std::string_view(topics::kAttestation.name),
+                                    std::string_view(topics::kOrder.name),
+                                    std::string_view(topics::kOrderMemory.name),
+                                    std::string_view(topics::kAgentOrders.name),
+                                    std::string_view(topics::kCourse.name),
+                                    std::string_view(topics::kCourseOffer.name),
+                                    std::string_view(topics::kSharedCourse.name),
+                                    std::string_view(topics::kSharedCourseOffer.name),
+                                    std::string_view(topics::kDisturbance.name),
+                                    std::string_view(topics::kNetworkFault.name)};
 
 }  // namespace
 

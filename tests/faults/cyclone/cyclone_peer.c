@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program of another vendor's DDS, built from the IDL alone.
-//   cyclone_peer read DOMAIN ROBOT COUNT   prints COUNT messages of each of five topics, as lines "TOPIC
+//   cyclone_peer read DOMAIN ROBOT COUNT   prints COUNT messages of each of seven topics, as lines "TOPIC
 //   JSON" cyclone_peer go DOMAIN ROBOT X Y       sends a robot somewhere; ends when it has arrived
 #include <dds/dds.h>
 #include <inttypes.h>
@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "course.h"
 #include "monitor.h"
 #include "negotiation.h"
 #include "order.h"
@@ -97,6 +98,19 @@ static void print_page(const sidestep_msg_LedgerPage* m) {
   REAL(m, min_x_m), REAL(m, min_y_m), REAL(m, max_x_m), REAL(m, max_y_m);
   OBJECTS(versions, m->versions._buffer, m->versions._length, print_version);
 }
+static void print_point(const sidestep_msg_CoursePoint* m) {
+  REAL(m, x_m), REAL(m, y_m), REAL(m, vx_mps), REAL(m, vy_mps);
+}
+static void print_course(const sidestep_msg_Course* m) {
+  UNSIGNED(m, robot), OBJECT(m, header, print_header), SIGNED(m, planned_at_ns), SIGNED(m, due_ns);
+  SIGNED(m, start_ns), BOOL(m, continues);
+  OBJECTS(points, m->points._buffer, m->points._length, print_point);
+}
+static void print_offer(const sidestep_msg_CourseOffer* m) {
+  UNSIGNED(m, robot), OBJECT(m, header, print_header), UNSIGNED(m, by), SIGNED(m, replaces_ns);
+  SIGNED(m, planned_at_ns), SIGNED(m, due_ns), SIGNED(m, start_ns), BOOL(m, continues);
+  OBJECTS(points, m->points._buffer, m->points._length, print_point);
+}
 static void print_ball(const sidestep_msg_TrackedBall* m) {
   BOOL(m, is_visible), REAL(m, x_m), REAL(m, y_m), REAL(m, vx_mps), REAL(m, vy_mps);
 }
@@ -165,6 +179,8 @@ PRINTER(print_verdict, sidestep_msg_Verdict)
 PRINTER(print_page, sidestep_msg_LedgerPage)
 PRINTER(print_world, sidestep_msg_WorldState)
 PRINTER(print_truth, sidestep_msg_GroundTruth)
+PRINTER(print_course, sidestep_msg_Course)
+PRINTER(print_offer, sidestep_msg_CourseOffer)
 
 /// Prints the wanted number of messages. Returns how many are missing.
 static int print_messages(struct input* input) {
@@ -192,7 +208,9 @@ static int read_topics(const char* robot, int count) {
                            {verdict, &sidestep_msg_Verdict_desc, print_verdict_of, 0, count},
                            {"ledger", &sidestep_msg_LedgerPage_desc, print_page_of, 0, count},
                            {"world", &sidestep_msg_WorldState_desc, print_world_of, 0, count},
-                           {"truth", &sidestep_msg_GroundTruth_desc, print_truth_of, 0, count}};
+                           {"truth", &sidestep_msg_GroundTruth_desc, print_truth_of, 0, count},
+                           {"course", &sidestep_msg_Course_desc, print_course_of, 0, count},
+                           {"course_offer", &sidestep_msg_CourseOffer_desc, print_offer_of, 0, count}};
   const int topics = sizeof inputs / sizeof *inputs;
   for (int i = 0; i < topics; ++i) inputs[i].reader = make_reader(inputs[i].name, inputs[i].type);
   const dds_time_t deadline = dds_time() + kTimeout;

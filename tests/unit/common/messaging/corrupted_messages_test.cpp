@@ -167,6 +167,40 @@ TEST_CASE("a registration with random bytes is refused or its versions are malfo
   CHECK(malformed > 1000);
 }
 
+bool is_valid_course(const DrivingCourse& course) {
+  const std::vector<State>& states = course.states;
+  const auto is_valid = [](const State& state) {
+    return is_within(state.position_m, 1e4) && is_within(state.velocity_mps, 100);
+  };
+  const bool is_continuous = std::ranges::adjacent_find(states, [](const State& a, const State& b) {
+                               return (b.position_m - a.position_m).norm() > 5;
+                             }) == states.end();
+  return course.robot < kMaxRobots && course.planned_at > Time{} && is_within(course.planned_at) &&
+         is_within(course.due) && is_within(course.start) && states.size() <= msg::MAX_COURSE_POINTS &&
+         std::ranges::all_of(states, is_valid) && is_continuous &&
+         (states.empty() || states.back().velocity_mps.isZero(0));
+}
+
+TEST_CASE("a course with random bytes is refused or within bounds") {
+  check_corrupted(
+      topics::kCourse, [](Rng& rng) { return encode(random_course(rng, 1 + rng.below(8))); },
+      [](const msg::Course& message) { return decode(message, kNow); }, is_valid_course);
+}
+
+TEST_CASE("an offer of a course with random bytes is refused or within bounds") {
+  check_corrupted(
+      topics::kCourseOffer,
+      [](Rng& rng) {
+        return encode(CourseOffer{random_course(rng, 1 + rng.below(8)), random_time(rng),
+                                  static_cast<RobotId>(rng.below(kMaxRobots))});
+      },
+      [](const msg::CourseOffer& message) { return decode(message, kNow); },
+      [](const CourseOffer& offer) {
+        return is_valid_course(offer.course) && !offer.course.is_empty() && is_within(offer.replaces) &&
+               offer.by < kMaxRobots;
+      });
+}
+
 TEST_CASE("a verdict with random bytes is refused or has known reasons") {
   check_corrupted(
       topics::kVerdict, [](Rng& rng) { return message_of(random_verdict(rng)); },

@@ -2,6 +2,7 @@
 // Random decoded messages of robot 3, and their encoded forms as Writer::publish() sends them.
 #pragma once
 
+#include "common/messaging/course_codec.hpp"
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/protocol/senders.hpp"
@@ -39,6 +40,23 @@ inline Version random_version(Rng& rng) {
                       {single(9), single(9)},
                       {single(9), single(9)}};
   return version;
+}
+
+/// Numbers have single precision, as in messages. Precondition: points > 0.
+inline DrivingCourse random_course(Rng& rng, std::size_t points) {
+  const auto single = [&](double max) {
+    return static_cast<double>(static_cast<float>(rng.uniform(-max, max)));
+  };
+  DrivingCourse course;
+  course.robot = kRobot;
+  course.planned_at = std::max(random_time(rng), time_from_ns(1));
+  course.due = random_time(rng);
+  course.start = kNow + from_seconds(rng.uniform(-59, 4.9));
+  for (std::size_t i = 0; i < points; ++i)
+    course.states.push_back({{single(1.5), single(1.5)}, {single(3), single(3)}});
+  course.states.back().velocity_mps = {0, 0};
+  course.continues = rng.chance(0.5);
+  return course;
 }
 
 inline Command random_command(Rng& rng) {

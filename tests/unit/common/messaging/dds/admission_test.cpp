@@ -209,6 +209,8 @@ TEST_CASE("participants that exchange no messages do not authenticate each other
     return agent.on_announcement(id, f.announced(id, certificate), f.now).refusal;
   };
   CHECK(refusal("agent 2") == Refusal::kNotNeeded);
+  CHECK(refusal("robot 2-4") == Refusal::kNotNeeded);
+  CHECK(refusal("robot 1") == Refusal::kNone);
   CHECK(refusal("coordinator 0") == Refusal::kNone);
   CHECK(refusal("agent 1") == Refusal::kNone);  // itself, or a second process with the same identity
 }

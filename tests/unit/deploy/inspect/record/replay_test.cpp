@@ -128,7 +128,7 @@ TEST_CASE("messages that agents, coordinators, robots and operators write count 
     if (is_commanding(topic)) names += std::string(topic.name) + " ";
   CHECK(names ==
         "command feedback registration proposal verdict ledger coordinator attestation order order_memory "
-        "agent_orders disturbance network_fault ");
+        "agent_orders course course_offer shared_course shared_course_offer disturbance network_fault ");
 }
 
 TEST_CASE("a replay of unknown topics or at zero speed is rejected") {

@@ -46,12 +46,26 @@ TEST_CASE("permissions and governance cover every domain that programs accept") 
 
 TEST_CASE("an agent's permissions include its own robot's channels") {
   const std::string text = permissions_of("agent 3");
-  CHECK(topics_in(text, "publish") == std::set<std::string>{"command/3", "registration", "proposal",
-                                                            "agent_orders", "order_status", "status",
-                                                            "counters", "clock_reading", "rules"});
+  CHECK(topics_in(text, "publish") ==
+        std::set<std::string>{"command/3", "registration", "proposal", "agent_orders", "order_status",
+                              "course", "course_offer", "status", "counters", "clock_reading", "rules"});
   CHECK(topics_in(text, "subscribe").count("feedback/3") == 1);
   CHECK(topics_in(text, "subscribe").count("feedback/*") == 0);
   CHECK(topics_in(text, "subscribe").count("truth") == 0);
+}
+
+TEST_CASE("agents publish courses to coordinators, and read them only from coordinators") {
+  const std::string agent = permissions_of("agent 3"), coordinator = permissions_of("coordinator 1");
+  for (const std::string topic : {"course", "course_offer"}) {
+    CAPTURE(topic);
+    CHECK(topics_in(agent, "publish").contains(topic));
+    CHECK_FALSE(topics_in(agent, "subscribe").contains(topic));
+    CHECK(topics_in(coordinator, "subscribe").contains(topic));
+    CHECK_FALSE(topics_in(coordinator, "publish").contains(topic));
+    CHECK(topics_in(coordinator, "publish").contains("shared_" + topic));
+    CHECK_FALSE(topics_in(agent, "publish").contains("shared_" + topic));
+    CHECK(topics_in(agent, "subscribe").contains("shared_" + topic));
+  }
 }
 
 TEST_CASE("permissions allow exactly what the topic table says") {
