@@ -24,6 +24,7 @@ Agent::Agent(const FloorSpec& floor, RobotId robot, Incarnation incarnation,
       planner_(floor, robot_, *scratch_),
       search_(*scratch_),
       strangers_(scratch_->rules),
+      courses_(robot, scratch_->rules),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)) {}
 
 bool Agent::on_robot_report(const RobotReport& robot_report) {
@@ -95,9 +96,19 @@ WaitReason Agent::wait_reason(Time now) const {
 }
 
 std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps, Duration max_lag) {
-  if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) return std::nullopt;
-  return planner_.plan({now, start, negotiation_.held().base_at(start), negotiation_.lead(), max_speed_mps,
-                        max_lag, assignment(), observations_, rng_});
+  course_start_.reset();
+  if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) {
+    planner_.pause(now);
+    return std::nullopt;
+  }
+  const Version& base = negotiation_.held().base_at(start);
+  std::optional<MotionPlan> plan = planner_.plan({now, start, base, negotiation_.lead(), max_speed_mps,
+                                                  max_lag, assignment(), observations_, courses_, rng_});
+  if (plan) {
+    course_start_ = start + negotiation_.lead() * cycle_;
+    at_course_start_ = base.trajectory.state_at(*course_start_);
+  }
+  return plan;
 }
 
 std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
@@ -109,6 +120,7 @@ std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
   const bool waits = goal && strangers_.is_at(goal->position_m);
   planner_.on_search(plan, result.desired_is_clear || waits, now);
   if (result.count == 0) return std::nullopt;
+  at_course_start_ = result.candidates.front().state_at(*course_start_);
   return negotiation_.propose({result.candidates.data(), result.count}, plan.base, now, plan.intent);
 }
 

@@ -100,6 +100,24 @@ class Agent {
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
+  /// Plans courses for the cycles to come. It may take milliseconds: call it after the proposal has been
+  /// sent.
+  void plan_courses() {
+    if (course_start_) planner_.plan_courses(*course_start_, at_course_start_, rng_);
+  }
+  void on_course(std::shared_ptr<const DrivingCourse> course, Time now) {
+    courses_.on_course(std::move(course), now);
+  }
+  void on_course_offer(std::shared_ptr<const CourseOffer> offer, Time now) {
+    courses_.on_offer(std::move(offer), now);
+  }
+  /// The course that the robot follows; nullptr if it has none.
+  const DrivingCourse* course() const { return planner_.course(); }
+  /// The offers that the last call of plan_courses() made to others.
+  std::span<const CourseOffer> course_offers() const {
+    return course_start_ ? planner_.course_offers() : std::span<const CourseOffer>{};
+  }
+
   /// The reason why plan() returns nullopt now. Does not consider the robot's own versions.
   WaitReason wait_reason(Time now) const;
   AgentActivity activity(Time now) const;
@@ -145,6 +163,9 @@ class Agent {
   MotionPlanner planner_;
   ProposalSearch search_;
   StrangerWatch strangers_;
+  CourseBook courses_;
+  std::optional<Time> course_start_;  // start of the motion after the one planned in this cycle
+  State at_course_start_;
   Rng rng_;
   std::optional<Version> forwarded_;  // granted version that has not started yet
   bool is_stopping_ = false;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "common/messaging/course_codec.hpp"
 #include "common/messaging/histogram_codec.hpp"
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/order_codec.hpp"
@@ -16,6 +17,8 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
+/// A course is repeated after this time, in case that a message was lost.
+constexpr Duration kCoursePeriod{500'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
 // Registrations that only measure a clock are less frequent than registrations that ask for another
 // coordinator; see FleetReception::kMaxRequestGap.
@@ -29,14 +32,12 @@ Duration cycle_offset(const FloorSpec& floor, RobotId robot) {
   return floor.cycle * index / static_cast<std::int64_t>(floor.robots.size());
 }
 
-/// Adds the duration of `work` to a histogram. It is measured by the wall clock even if the bus's time is
-/// virtual.
+/// Returns how long `work` takes. It is measured by the wall clock even if the bus's time is virtual.
 template <typename Work>
-auto timed(DurationHistogram& histogram, Work work) {
+Duration duration_of(Work work) {
   const auto begin = std::chrono::steady_clock::now();
-  auto result = work();
-  histogram.add(std::chrono::steady_clock::now() - begin);
-  return result;
+  work();
+  return std::chrono::steady_clock::now() - begin;
 }
 
 }  // namespace
@@ -56,6 +57,8 @@ AgentNode::AgentNode(Bus& bus, const FloorSpec& floor, RobotId robot, Incarnatio
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)),
+      course_writer_(bus.advertise(topics::kCourse)),
+      offer_writer_(bus.advertise(topics::kCourseOffer)),
       orders_(bus, robot),
       counters_(bus, robot, incarnation, [this](DropCounters& drops) { count_drops(drops); }) {
   if (floor.laser) scans_.emplace(robot, floor.laser->settings);
@@ -76,6 +79,8 @@ void AgentNode::subscribe() {
   bus_.subscribe(topics::kLedger, [this](const msg::LedgerPage& m) { on_page(m); });
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& m) { on_coordinator_state(m); });
   bus_.subscribe(topics::kOrderMemory, [this](const msg::OrderMemory& m) { on_orders(m); });
+  bus_.subscribe(topics::kSharedCourse, [this](const msg::Course& m) { on_course(m); });
+  bus_.subscribe(topics::kSharedCourseOffer, [this](const msg::CourseOffer& m) { on_course_offer(m); });
 }
 
 void AgentNode::on_robot_report(const msg::Feedback& message) {
@@ -160,27 +165,42 @@ void AgentNode::on_disturbance(const msg::Disturbance& message) {
     drops_.count(DropReason::kMalformedPlacement);
 }
 
-std::shared_ptr<const OrderPage> AgentNode::shared_page(const msg::OrderMemory& message) {
+template <typename Decoded, typename Message>
+std::shared_ptr<const Decoded> AgentNode::decode_shared(const Message& message) {
   MessageAttachment* const attachment = bus_.attachment(&message);
   if (attachment) {
-    if (auto shared = attachment->get<OrderPage>()) return shared;
+    if (auto shared = attachment->get<Decoded>()) return shared;
   }
   auto decoded = decode(message, bus_.now());
   if (!decoded) return nullptr;
-  const auto page = std::make_shared<OrderPage>(std::move(*decoded));
-  if (attachment) attachment->set(page);
-  return page;
+  const auto shared = std::make_shared<Decoded>(std::move(*decoded));
+  if (attachment) attachment->set(shared);
+  return shared;
 }
 
 void AgentNode::on_orders(const msg::OrderMemory& message) {
   if (!is_coordinator(message.header().sender())) return;
-  const auto page = shared_page(message);
+  const auto page = decode_shared<OrderPage>(message);
   if (!page) return drops_.count(DropReason::kMalformedOrder);
   agent_.on_orders(page);
   if (agent_.is_superseded()) return;
   orders_.on_page(*page, agent_);
   if (agent_.needs_registration() && agent_.coordinator_knows_all_orders()) registration_wait_ = 0;
   register_if_due();
+}
+
+void AgentNode::on_course(const msg::Course& message) {
+  if (!is_coordinator(message.header().sender())) return;
+  auto course = decode_shared<DrivingCourse>(message);
+  if (!course) return drops_.count(DropReason::kMalformedCourse);
+  agent_.on_course(std::move(course), robot_now());
+}
+
+void AgentNode::on_course_offer(const msg::CourseOffer& message) {
+  if (!is_coordinator(message.header().sender())) return;
+  auto offer = decode_shared<CourseOffer>(message);
+  if (!offer) return drops_.count(DropReason::kMalformedCourseOffer);
+  agent_.on_course_offer(std::move(offer), robot_now());
 }
 
 void AgentNode::begin_cycle() {
@@ -277,13 +297,43 @@ void AgentNode::negotiate(Time start) {
   if (const auto rest = agent_.propose_rest_version(robot_now(), start)) return publish_proposal(*rest);
   const double max_speed_mps = clocks_.max_speed_mps(bus_.now());
   const Duration max_lag = clocks_.max_lag(bus_.now());
-  const auto plan =
-      timed(plan_durations_, [&] { return agent_.plan(robot_now(), start, max_speed_mps, max_lag); });
-  if (!plan) return;
+  std::optional<MotionPlan> plan;
+  Duration planning = duration_of([&] { plan = agent_.plan(robot_now(), start, max_speed_mps, max_lag); });
+  if (!plan) {
+    plan_durations_.add(planning);
+    return publish_courses();
+  }
   // More measurements narrow the offset's interval, which allows the robot to drive faster.
   if (max_speed_mps < max_speed_mps_) measure_coordinator_clock(kBetweenMeasurements);
-  const auto proposal = timed(search_durations_, [&] { return agent_.search(*plan, robot_now()); });
+  std::optional<Proposal> proposal;
+  search_durations_.add(duration_of([&] { proposal = agent_.search(*plan, robot_now()); }));
   if (proposal) publish_proposal(*proposal);
+  planning += duration_of([&] { agent_.plan_courses(); });
+  plan_durations_.add(planning);
+  publish_courses();
+}
+
+void AgentNode::publish_courses() {
+  for (const CourseOffer& offer : agent_.course_offers()) {
+    auto message = encode(offer);
+    message.header().incarnation(agent_.incarnation());
+    offer_writer_.publish(message, bus_.now());
+  }
+  const DrivingCourse* course = agent_.course();
+  const std::optional<Time> plan = course ? std::optional(course->planned_at) : std::nullopt;
+  const bool is_new = plan != published_plan_ || (course && course->start != published_start_);
+  // A robot that has arrived is known from its versions.
+  const bool is_over = !course || course->end() < robot_now();
+  if (!is_new && (is_over || !has_elapsed(kCoursePeriod, course_published_at_))) return;
+  DrivingCourse none;
+  none.robot = robot_;
+  none.planned_at = robot_now();
+  auto message = encode(course ? *course : none);
+  message.header().incarnation(agent_.incarnation());
+  course_writer_.publish(message, bus_.now());
+  published_plan_ = plan;
+  if (course) published_start_ = course->start;
+  course_published_at_ = bus_.now();
 }
 
 void AgentNode::publish_command(const Command& command) {

@@ -54,8 +54,11 @@ class AgentNode {
   void on_coordinator_state(const msg::CoordinatorState& message);
   void on_disturbance(const msg::Disturbance& message);
   void on_orders(const msg::OrderMemory& message);
-  /// The decoded page, which all agents in this process share; null if it is invalid.
-  std::shared_ptr<const OrderPage> shared_page(const msg::OrderMemory& message);
+  void on_course(const msg::Course& message);
+  void on_course_offer(const msg::CourseOffer& message);
+  /// The decoded message, which all agents in this process share; null if it is invalid.
+  template <typename Decoded, typename Message>
+  std::shared_ptr<const Decoded> decode_shared(const Message& message);
   /// Whether a message could be decoded. Counts messages that could not.
   template <typename Value>
   bool accept(const std::optional<Value>& decoded, DropReason reason) {
@@ -88,6 +91,8 @@ class AgentNode {
   void publish(const Registration& registration);
   void publish_proposal(const Proposal& proposal);
   void publish_status();
+  /// Publishes the robot's course if it has changed or was not published for a while, and new offers.
+  void publish_courses();
 
   Bus& bus_;
   RobotId robot_;
@@ -106,12 +111,17 @@ class AgentNode {
   Time next_cycle_;            // by the robot's clock, like all times that are passed to the agent
   bool commanded_ = false;     // a command has been published in this cycle
   int registration_wait_ = 0;  // number of cycles until the next registration
-  Time measured_at_{};         // time of the latest request for a clock measurement
+  /// The course that was published last: when it was planned, its start, and when it was published.
+  std::optional<Time> published_plan_{Time{}};  // an agent says first that it has none, or which
+  Time published_start_{}, course_published_at_{};
+  Time measured_at_{};  // time of the latest request for a clock measurement
   DurationHistogram negotiation_durations_, plan_durations_, search_durations_;
   Writer<msg::Command> command_writer_;
   Writer<msg::Registration> registration_writer_;
   Writer<msg::Proposal> proposal_writer_;
   Writer<msg::AgentStatus> status_writer_;
+  Writer<msg::Course> course_writer_;
+  Writer<msg::CourseOffer> offer_writer_;
   OrderPublisher orders_;
   CounterPublisher counters_;
 };

@@ -13,9 +13,6 @@
 namespace sidestep {
 namespace {
 
-/// A robot that is overdue for longer counts as having just set out: robots before which it goes may be
-/// unable to pass it.
-constexpr Duration kPatience{10'000'000'000};
 /// A robot whose intended speed is below this fraction of the limit counts as waiting.
 constexpr double kWaitingSpeedFraction = 0.5;
 constexpr double kRecoveryClearPath_m = 0.5;  ///< length of free path that a recovery direction requires
@@ -58,7 +55,7 @@ Intent IntentPlanner::choose(const Query& query, const RouteToTarget& routes, Ne
 }
 
 Time IntentPlanner::due(const Query& query) {
-  if (!due_ || query.start - *due_ > kPatience)
+  if (!due_ || query.start - *due_ > kMaxOverdue)
     due_ = query.start + from_seconds(TrapezoidalProfile::duration_s(query.route.length_m, 0, rules_.limits));
   return *due_;
 }

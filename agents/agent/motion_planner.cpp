@@ -2,6 +2,7 @@
 #include "agents/agent/motion_planner.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "agents/agent/planning_distances.hpp"
 #include "agents/agent/sight_motion.hpp"
@@ -27,6 +28,72 @@ NamedPlanner planner_of(const FloorSpec& floor, const RobotSpec& robot) {
   return make_driving_planner(robot.planner.empty() ? floor.planner : robot.planner);
 }
 
+/// Courses of robots that are farther away do not matter yet.
+constexpr double kCourseHorizon_m = 5;
+/// Length of the straight line between two places on a bent course, as a part of the way. Dead reckoning
+/// becomes worse with the way.
+constexpr double kStraightShare = 0.9;
+/// A robot that cannot follow a course now has none for this long, because such things come and go.
+constexpr Duration kWithoutCourse{300'000'000};
+/// A robot without a course that has rested for this long counts as an obstacle.
+constexpr Duration kStaysAfter{500'000'000};
+/// A robot without a course that rests again within this distance has not driven away.
+constexpr double kSamePlace_m = 0.03;
+/// The intent of a robot with a course: its velocity after the first time, for twice that time, then the
+/// place where it will be after the second one.
+constexpr Duration kIntendedVelocity{150'000'000}, kIntendedPlace{600'000'000};
+
+/// The place on a route where a course from `from_m` should end: the end of the route if it is near enough.
+/// nullopt if the end is far away and the way to it is open: there robots steer better than by courses that
+/// do not lead to their targets.
+std::optional<Vec2> course_goal_m(const Vec2& from_m, std::span<const Vec2> waypoints_m, const Vec2& end_m,
+                                  double reach_m) {
+  const auto is_near = [&](const Vec2& place_m) {
+    return (place_m - from_m).cwiseAbs().maxCoeff() <= reach_m;
+  };
+  if (!is_near(waypoints_m.empty() ? end_m : waypoints_m.front())) return std::nullopt;
+  Vec2 last_m = from_m;
+  for (std::size_t i = 0; i <= waypoints_m.size(); ++i) {
+    const Vec2 next_m = i < waypoints_m.size() ? waypoints_m[i] : end_m;
+    if (!is_near(next_m)) {
+      // Halves the interval in which the route leaves the surroundings.
+      Vec2 inside_m = last_m, outside_m = next_m;
+      while ((outside_m - inside_m).norm() > 0.01) {
+        const Vec2 middle_m = (inside_m + outside_m) / 2;
+        (is_near(middle_m) ? inside_m : outside_m) = middle_m;
+      }
+      return inside_m;
+    }
+    last_m = next_m;
+  }
+  return end_m;
+}
+
+/// The acceleration, reduced so that the robot does not exceed a speed limit after a time. A robot that is
+/// too fast brakes without turning, because a turn would leave less acceleration for braking.
+Vec2 with_speed_limit(const Vec2& acceleration_mps2, const Vec2& velocity_mps, double limit_mps,
+                      double duration_s) {
+  const Vec2 after_mps = velocity_mps + duration_s * acceleration_mps2;
+  const double speed_mps = after_mps.norm();
+  if (speed_mps <= limit_mps) return acceleration_mps2;
+  const double now_mps = velocity_mps.norm();
+  if (now_mps > limit_mps) return (limit_mps / now_mps - 1) / duration_s * velocity_mps;
+  return (limit_mps / speed_mps * after_mps - velocity_mps) / duration_s;
+}
+
+/// The speed from which a robot that begins to brake after a time comes to rest within a distance.
+double max_speed_within_mps(double distance_m, double reaction_s, double deceleration_mps2) {
+  const double lost_mps = deceleration_mps2 * reaction_s;
+  return std::sqrt(lost_mps * lost_mps + 2 * deceleration_mps2 * std::max(0.0, distance_m)) - lost_mps;
+}
+
+Intent intent_of(const DrivingCourse& course, Time t) {
+  Intent intent{course.state_at(t + kIntendedVelocity).velocity_mps, to_seconds(2 * kIntendedVelocity),
+                course.position_at(t + kIntendedPlace), course.goal_m()};
+  intent.due = course.due;
+  return intent;
+}
+
 /// Whether a robot that executes the version stays at the place.
 bool will_rest_at(const Version& base, const Vec2& place_m) {
   return (base.trajectory.rest_position_m() - place_m).norm() < kAtGoal_m && base.inflation_m == 0;
@@ -42,24 +109,29 @@ MotionPlanner::MotionPlanner(const FloorSpec& floor, const RobotSpec& robot, Pla
       blockage_(kBlockedAfter),
       passage_(rules_),
       corners_(rules_.radius_m),
-      intents_(robot.id, route_.local_methods(), rules_, scratch.steering) {}
+      intents_(robot.id, route_.local_methods(), rules_, scratch.steering),
+      robot_(robot.id) {}
 
 std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
   const Version& base = query.base;
   if (query.now < last_plan_) restart_timers(query.now);
   last_plan_ = query.now;
+  course_query_.reset();
   passage_.update(query.now, query.observations, query.assignment, route_, query.rng);
   // Inflation ends only when the robot is at rest. If the robot drove on with inflation, it might never fit
   // through narrow places.
+  if (base.inflation_m > 0) pause(query.now);
   if (base.inflation_m > 0 || query.start <= base.trajectory.start()) return std::nullopt;
   const Vec2 target = target_m(query);
   const std::optional<Route> route = find_route(query, target);
   if (!route) return std::nullopt;
   const State at_start = base.trajectory.state_at(query.start);
-  Intent intent = intents_.choose({at_start, query.start, *route, hold_bounds(query.lead).max}, route_,
-                                  query.observations.neighbours());
+  const DrivingCourse* course = follow_course(query, at_start, *route);
+  Intent intent = course ? intent_of(*course, query.start)
+                         : intents_.choose({at_start, query.start, *route, hold_bounds(query.lead).max},
+                                           route_, query.observations.neighbours());
   intent.target_m = target;
-  return follow_intent(query, intent, at_start, *route);
+  return follow_intent(query, intent, at_start, *route, course);
 }
 
 void MotionPlanner::restart_timers(Time now) {
@@ -67,6 +139,9 @@ void MotionPlanner::restart_timers(Time now) {
   blockage_.restart();
   corners_.restart();
   intents_.on_new_goal();
+  if (courses_) courses_->give_up();
+  resting_.clear();
+  no_course_until_ = {};
 }
 
 Vec2 MotionPlanner::target_m(const Query& query) const {
@@ -116,13 +191,95 @@ double MotionPlanner::max_speed_mps(const Query& query, const State& at_start) c
                                                           rules_.radius_m, reaction, rules_.limits));
 }
 
+double MotionPlanner::max_course_speed_mps(const Query& query, const State& at_start) const {
+  const double observed_m = kStraightShare * query.observations.own().dead_reckoning_m(at_start.position_m);
+  const double reaction_s = to_seconds(hold_bounds(query.lead).max + cycle_);
+  return std::min(max_speed_mps(query, at_start),
+                  max_speed_within_mps(observed_m, reaction_s, rules_.limits.deceleration_mps2));
+}
+
 HoldBounds MotionPlanner::hold_bounds(int lead) const {
   const Duration min = std::max(cycle_, kMinHold);
   return {min, std::max(min, cycle_ * lead)};
 }
 
+bool MotionPlanner::may_follow_course(const Query& query, const State& at_start, const Route& route) const {
+  Observations& seen = query.observations;
+  if (seen.laser() || route_.local_methods() || passage_.place_m() || route.is_way_out) return false;
+  const auto is_near = [&](const MovingObstacle& body) {
+    return (body.position_m - at_start.position_m).norm() - body.radius_m <= kCourseHorizon_m;
+  };
+  return std::ranges::none_of(seen.obstacles().recent(query.now, query.max_lag), is_near) &&
+         std::ranges::none_of(seen.displaced().recent(query.now, query.max_lag), is_near,
+                              &UncontrolledBody::reach);
+}
+
+bool MotionPlanner::find_robots_without_course(const Query& query, const Vec2& position_m) {
+  leaving_m_.clear();
+  staying_m_.clear();
+  const auto with_course = query.courses.nearby(position_m, kCourseHorizon_m, query.now);
+  for (const Version* version : query.observations.neighbours().newest(position_m, page_horizon_m(rules_))) {
+    const bool has_course =
+        std::ranges::find(with_course, version->robot, &DrivingCourse::robot) != with_course.end();
+    if (has_course) continue;
+    if (version->inflation_m > 0) return false;
+    const OtherAssignment orders = query.assignment.other(version->robot);
+    const Vec2 place_m = version->trajectory.rest_position_m();
+    Resting& resting = resting_[version->robot];
+    if (resting.seen_at == Time{} || (resting.place_m - place_m).norm() > kSamePlace_m)
+      resting = {place_m, query.now, query.now};
+    resting.seen_at = query.now;
+    const bool stays = orders.is_held || !orders.has_drive_order || query.now - resting.since > kStaysAfter;
+    (stays ? staying_m_ : leaving_m_).push_back(place_m);
+  }
+  std::erase_if(resting_, [&](const auto& entry) { return entry.second.seen_at != query.now; });
+  return true;
+}
+
+const DrivingCourse* MotionPlanner::follow_course(const Query& query, const State& at_start,
+                                                  const Route& route) {
+  if (!may_follow_course(query, at_start, route) || !find_robots_without_course(query, at_start.position_m)) {
+    no_course_until_ = query.now + kWithoutCourse;
+    if (courses_) courses_->give_up();
+  }
+  if (query.now < no_course_until_) return nullptr;
+  if (!courses_) courses_.emplace(robot_, rules_, route_.obstacles()->fixed_world());
+  offers_.clear();
+  for (const HeardOffer& heard : query.courses.offers(query.now)) offers_.push_back(heard.offer.get());
+  MotionLimits limits = rules_.limits;
+  limits.speed_mps = std::min(limits.speed_mps, max_speed_mps(query, at_start));
+  course_query_ = {query.start,
+                   at_start,
+                   route.end_m,
+                   course_goal_m(at_start.position_m, route_.remaining_waypoints_m(), route.end_m,
+                                 CourseSearch::reach_m(limits.speed_mps)),
+                   limits,
+                   {query.courses.nearby(at_start.position_m, kCourseHorizon_m, query.now), offers_,
+                    leaving_m_, staying_m_}};
+  return courses_->follow(*course_query_);
+}
+
+void MotionPlanner::plan_courses(Time next, const State& at_next, Rng& rng) {
+  if (!course_query_) return;
+  CoursePlanner::Query query = *course_query_;
+  query.start = next;
+  query.at_start = at_next;
+  courses_->plan(query, rng);
+}
+
+void MotionPlanner::pause(Time now) {
+  const DrivingCourse* course = this->course();
+  if (course && course->end() > now) courses_->give_up();
+}
+
+std::span<const CourseOffer> MotionPlanner::course_offers() const {
+  if (!course_query_) return {};
+  return courses_->offers();
+}
+
 std::optional<MotionPlan> MotionPlanner::follow_intent(const Query& query, const Intent& intent,
-                                                       const State& at_start, const Route& route) {
+                                                       const State& at_start, const Route& route,
+                                                       const DrivingCourse* course) {
   Observations& seen = query.observations;
   const RobotLaser* laser = seen.laser();
   if (laser && !laser->sight().visibility().is_enclosed_by_frontiers(at_start.position_m))
@@ -142,7 +299,15 @@ std::optional<MotionPlan> MotionPlanner::follow_intent(const Query& query, const
     if (motion.is_creeping) search.max_speed_mps = std::min(max_speed, search.hidden.creep_mps);
     update_corners({at_start, query.start, intent.waypoint_m, motion.is_creeping}, *laser, query.now);
   } else {
-    desired = follow(followed, max_speed);
+    // The version after this one starts `lead` cycles later.
+    if (course) {
+      desired.hold = followed.hold.max;
+      desired.acceleration_mps2 =
+          with_speed_limit(courses_->acceleration_mps2(*course_query_, desired.hold), at_start.velocity_mps,
+                           max_course_speed_mps(query, at_start), to_seconds(desired.hold));
+    } else {
+      desired = follow(followed, max_speed);
+    }
     search.creep_mps = kCreep_mps;
     search.moving = seen.obstacles().recent(query.now, query.max_lag);
     search.seen = seen.obstacles().seen(query.now, query.max_lag);
@@ -154,7 +319,7 @@ std::optional<MotionPlan> MotionPlanner::follow_intent(const Query& query, const
   search.keep_outs = route_.zones().keep_outs();
   search.preferred_mps2 = intents_.preferred_accelerations(at_start.velocity_mps, desired.hold);
   if (route.is_way_out) search.way_out_m = route.end_m;
-  return MotionPlan{search, query.base.number, intent};
+  return MotionPlan{search, query.base.number, intent, course != nullptr};
 }
 
 void MotionPlanner::update_corners(const OccludedCorners::Approach& approach, const RobotLaser& laser,
@@ -163,12 +328,15 @@ void MotionPlanner::update_corners(const OccludedCorners::Approach& approach, co
 }
 
 void MotionPlanner::on_search(const MotionPlan& plan, bool desired_is_clear, Time now) {
+  // A robot that waits as planned is in no deadlock.
+  if (plan.follows_course) return;
   intents_.on_search(plan.intent, desired_is_clear, plan.query.at_start.velocity_mps.norm(), now);
 }
 
 void MotionPlanner::on_new_goal() {
   route_.forget();
   intents_.on_new_goal();
+  if (courses_) courses_->give_up();
   blockage_.clear();
   passage_.restart(last_plan_);
 }
@@ -176,6 +344,8 @@ void MotionPlanner::on_new_goal() {
 void MotionPlanner::set_zones(std::span<const Order> zones) {
   route_.set_zones(zones);
   passage_.restart(last_plan_);
+  courses_.reset();
+  course_query_.reset();
 }
 
 bool MotionPlanner::is_kept_out(const Vec2& position_m) const {

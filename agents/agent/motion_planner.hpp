@@ -2,10 +2,12 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "agents/agent/assignment.hpp"
 #include "agents/agent/blockage_monitor.hpp"
+#include "agents/agent/course_book.hpp"
 #include "agents/agent/desired_motion.hpp"
 #include "agents/agent/intent_planner.hpp"
 #include "agents/agent/observations.hpp"
@@ -14,6 +16,7 @@
 #include "agents/agent/planning_scratch.hpp"
 #include "agents/agent/route_surroundings.hpp"
 #include "agents/agent/route_to_target.hpp"
+#include "agents/navigation/course_planner.hpp"
 #include "agents/safety/safety_search.hpp"
 
 namespace sidestep {
@@ -24,6 +27,7 @@ struct MotionPlan {
   SearchQuery query;
   VersionNumber base = 0;  ///< the version that the motion continues
   Intent intent;           ///< the robot's intent after the motion
+  bool follows_course = false;
 };
 
 /// Plans a robot's motion from its target to the query for the safety search: whether to give way, the route,
@@ -39,6 +43,7 @@ class MotionPlanner {
     Duration max_lag{0};  ///< the robot's maximum lag in excess of the clock bound
     const Assignment& assignment;
     Observations& observations;
+    CourseBook& courses;
     Rng& rng;
   };
 
@@ -51,6 +56,17 @@ class MotionPlanner {
   [[nodiscard]] std::optional<MotionPlan> plan(const Query& query);
   /// Processes the result of the search for a plan.
   void on_search(const MotionPlan& plan, bool desired_is_clear, Time now);
+
+  /// Plans the robot's course for the cycles to come, and courses that it offers to others. It may take
+  /// milliseconds, so call it after the motion of this cycle has been proposed. `next` is when the motion
+  /// after this one starts, `at_next` the robot's state then.
+  void plan_courses(Time next, const State& at_next, Rng& rng);
+  /// Gives up the course unless the robot has finished it: the robot does not drive.
+  void pause(Time now);
+  /// The course that the robot follows; nullptr if it has none.
+  const DrivingCourse* course() const { return courses_ ? courses_->course() : nullptr; }
+  /// The offers that the last call of plan_courses() made to others.
+  std::span<const CourseOffer> course_offers() const;
 
   /// Call it when the robot gets another goal.
   void on_new_goal();
@@ -73,13 +89,23 @@ class MotionPlanner {
   /// The route to the target; nullopt if the robot is at the target, or no route is known in this cycle.
   std::optional<Route> find_route(const Query& query, const Vec2& target_m);
   void update_blockage(const Route& route, Time now);
-  /// The plan that follows the intent; nullopt if the laser has not seen the floor where the robot is.
+  /// The robot's course; nullptr if the robot has to find its way without one.
+  const DrivingCourse* follow_course(const Query& query, const State& at_start, const Route& route);
+  /// Whether the robot can drive by a course: it relies on routes, and no body is near that nobody controls.
+  bool may_follow_course(const Query& query, const State& at_start, const Route& route) const;
+  /// Finds the robots nearby that have no course, and whether they will drive away. Returns false if one of
+  /// them needs more room than courses leave.
+  bool find_robots_without_course(const Query& query, const Vec2& position_m);
+  /// The plan that follows the intent, or the course if there is one; nullopt if the laser has not seen the
+  /// floor where the robot is.
   std::optional<MotionPlan> follow_intent(const Query& query, const Intent& intent, const State& at_start,
-                                          const Route& route);
+                                          const Route& route, const DrivingCourse* course);
   /// Makes routes avoid a corner at which the robot has come to a standstill.
   void update_corners(const OccludedCorners::Approach& approach, const RobotLaser& laser, Time now);
   /// The lowest of the speeds that the clocks, the goal and the zones allow.
   double max_speed_mps(const Query& query, const State& at_start) const;
+  /// The same for a robot with a course, which also has to stop if vision does not see it in time.
+  double max_course_speed_mps(const Query& query, const State& at_start) const;
   HoldBounds hold_bounds(int lead) const;
 
   const FloorRules& rules_;
@@ -90,7 +116,18 @@ class MotionPlanner {
   PassageYielding passage_;
   OccludedCorners corners_;
   IntentPlanner intents_;
-  Time last_plan_{};
+  const RobotId robot_;
+  std::optional<CoursePlanner> courses_;              // made when it is first used
+  std::optional<CoursePlanner::Query> course_query_;  // of this cycle
+  std::vector<const CourseOffer*> offers_;
+  std::vector<Vec2> leaving_m_, staying_m_;
+  /// A robot that rests without a course, and since when.
+  struct Resting {
+    Vec2 place_m{0, 0};
+    Time since{}, seen_at{};
+  };
+  std::map<RobotId, Resting> resting_;
+  Time no_course_until_{}, last_plan_{};
 };
 
 }  // namespace sidestep

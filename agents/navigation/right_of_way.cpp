@@ -29,6 +29,10 @@ bool goes_first(const DueRobot& other, const DueRobot& self) {
   return rank(other) < rank(self);
 }
 
+bool precedes(const DrivingCourse& a, const DrivingCourse& b) {
+  return goes_first(DueRobot{a.robot, a.due}, DueRobot{b.robot, b.due});
+}
+
 bool other_passes_first(const PassageContender& other, const PassageContender& self, Time t,
                         Duration period) {
   const std::uint64_t number = number_of_period(t, period);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/course_codec.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
@@ -184,6 +185,18 @@ const std::vector<Cause> kCauses{
        page.versions()[0].vx_mps(kNan);
        s.send(topics::kLedger, page);
      }},
+    {DropReason::kMalformedCourse, "coordinator",
+     [](FaultySender& s, SimSystem&) { s.send(topics::kCourse, from<msg::Course>(5)); }},
+    {DropReason::kMalformedCourseOffer, "coordinator",
+     [](FaultySender& s, SimSystem&) { s.send(topics::kCourseOffer, from<msg::CourseOffer>(5)); }},
+    {DropReason::kMalformedCourse, "agent 0",
+     [](FaultySender& s, SimSystem&) {
+       s.send(topics::kSharedCourse, from<msg::Course>(Sender::kCoordinator));
+     }},
+    {DropReason::kMalformedCourseOffer, "agent 0",
+     [](FaultySender& s, SimSystem&) {
+       s.send(topics::kSharedCourseOffer, from<msg::CourseOffer>(Sender::kCoordinator));
+     }},
     {DropReason::kMalformedCoordinatorState, "agent 0",
      [](FaultySender& s, SimSystem&) {
        s.state.coordinator_mode(static_cast<msg::CoordinatorMode>(99));
@@ -256,6 +269,13 @@ const std::vector<Cause> kCauses{
          s.send(topics::kProposal, s.proposal);
          system.run_for(10ms);
        }
+     }},
+    {DropReason::kFrequentCourse, "coordinator",
+     [](FaultySender& s, SimSystem&) {
+       DrivingCourse none;
+       none.robot = 0;
+       none.planned_at = s.now();
+       for (int i = 0; i < 20; ++i) s.send(topics::kCourse, encode(none));
      }},
     {DropReason::kUnknownRobot, "coordinator",
      [](FaultySender& s, SimSystem&) {

@@ -10,8 +10,8 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kStartupTimeout = std::chrono::seconds(20);
-/// An agent may plan for up to 3 ms.
-constexpr Duration kInterrupted = std::chrono::milliseconds(5);
+/// An agent may plan for up to 20 ms.
+constexpr Duration kInterrupted = std::chrono::milliseconds(30);
 
 /// The mean of the durations in a histogram, each counted as the middle of its bucket.
 double mean_us(const DurationHistogram& histogram) {

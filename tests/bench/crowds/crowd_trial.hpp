@@ -14,7 +14,7 @@ namespace sidestep {
 [[nodiscard]] Report drive_crowd(const Scenario& scenario, std::uint64_t seed);
 
 /// The result in a report. A run of which the audit did not hear enough counts as a violation. The time per
-/// cycle is that of the agent's planning by the wall clock; cycles of more than 5 ms, which other processes
+/// cycle is that of the agent's planning by the wall clock; cycles of more than 30 ms, which other processes
 /// have interrupted, do not count.
 [[nodiscard]] CrowdResult crowd_result_of(const Report& report);
 

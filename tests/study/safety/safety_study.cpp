@@ -22,7 +22,7 @@ struct SafetySizes {
   std::vector<int> searchers{2, 5, 10, 20, 50, 100, 200, 500, 1000};
   int search_trials = 100;
 };
-SafetySizes quick_safety_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 10}, {2, 20, 100}, 5}; }
+SafetySizes quick_safety_sizes() { return {{2, 16}, 2, 8, 16, 2, 8, {0, 10}, {0.5, 20}, {2, 20, 100}, 5}; }
 
 std::string columns_of(const TraversalResult& r) {
   return fmt::format("{:.9f},{},{:.6f},{},{:.6f}", r.penetration_m_s, r.contacts, r.min_clearance_m,

@@ -126,9 +126,74 @@ const std::vector<Forgery>& forgeries() {
          f.obstacles().obstacles().resize(1);
          f.obstacles().obstacles()[0].x_m(std::numeric_limits<double>::quiet_NaN());
        }},
-      {"obstacle list: an obstacle observed far ahead", [](Forger& f) {
+      {"obstacle list: an obstacle observed far ahead",
+       [](Forger& f) {
          f.obstacles().obstacles().resize(1);
          f.obstacles().obstacles()[0].observed_at_ns(static_cast<std::int64_t>(kHuge));
+       }},
+      {"course: from another robot's agent",
+       [](Forger& f) {
+         f.course().header().sender(f.victim() + 1);
+         f.course().points().clear();
+       }},
+      {"course: planned far ahead",
+       [](Forger& f) { f.course().planned_at_ns(static_cast<std::int64_t>(kHuge)); }},
+      {"course: planned in half an hour",
+       [](Forger& f) { f.course().planned_at_ns(f.course().planned_at_ns() + 1'800'000'000'000); }},
+      {"course: the robot has none",
+       [](Forger& f) {
+         f.course().planned_at_ns(f.course().planned_at_ns() + 1);
+         f.course().points().clear();
+       }},
+      {"course: a point without a position",
+       [](Forger& f) {
+         f.course().points().resize(1);
+         f.course().points()[0].x_m(std::numeric_limits<float>::quiet_NaN());
+       }},
+      {"course: elsewhere, before all others",
+       [](Forger& f) {
+         f.course().planned_at_ns(f.course().planned_at_ns() + 1);
+         f.course().due_ns(0);
+         for (auto& point : f.course().points()) point.x_m(point.x_m() + 1);
+       }},
+      {"course offer: from a coordinator",
+       [](Forger& f) { f.course_offer().header().sender(static_cast<std::uint32_t>(Sender::kCoordinator)); }},
+      {"course offer: by another robot's agent",
+       [](Forger& f) { f.course_offer().by(f.course_offer().by() + 1); }},
+      {"course offer: no points", [](Forger& f) { f.course_offer().points().clear(); }},
+      {"course offer: elsewhere, before all others",
+       [](Forger& f) {
+         f.course_offer().planned_at_ns(f.course_offer().planned_at_ns() + 1);
+         f.course_offer().due_ns(0);
+         for (auto& point : f.course_offer().points()) point.x_m(point.x_m() + 1);
+       }},
+      {"shared course: from an agent",
+       [](Forger& f) {
+         f.shared_course().header().sender(f.victim());
+         f.shared_course().points().clear();
+       }},
+      {"shared course: planned far ahead",
+       [](Forger& f) { f.shared_course().planned_at_ns(static_cast<std::int64_t>(kHuge)); }},
+      {"shared course: planned in half an hour",
+       [](Forger& f) {
+         f.shared_course().planned_at_ns(f.shared_course().planned_at_ns() + 1'800'000'000'000);
+       }},
+      {"shared course: the robot has none",
+       [](Forger& f) {
+         f.shared_course().planned_at_ns(f.shared_course().planned_at_ns() + 1);
+         f.shared_course().points().clear();
+       }},
+      {"shared course: elsewhere, before all others",
+       [](Forger& f) {
+         f.shared_course().planned_at_ns(f.shared_course().planned_at_ns() + 1);
+         f.shared_course().due_ns(0);
+         for (auto& point : f.shared_course().points()) point.x_m(point.x_m() + 1);
+       }},
+      {"shared course offer: by no robot", [](Forger& f) { f.shared_offer().by(kMaxRobots); }},
+      {"shared course offer: elsewhere, before all others", [](Forger& f) {
+         f.shared_offer().planned_at_ns(f.shared_offer().planned_at_ns() + 1);
+         f.shared_offer().due_ns(0);
+         for (auto& point : f.shared_offer().points()) point.x_m(point.x_m() + 1);
        }}};
   return all;
 }

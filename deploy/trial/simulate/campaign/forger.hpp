@@ -70,6 +70,10 @@ class Forger {
   Forged<msg::LedgerPage> page{*this, topics::kLedger};
   Forged<msg::WorldState> world{*this, topics::kWorld};
   Forged<msg::ObstacleList> obstacles{*this, topics::kObstacles};
+  Forged<msg::Course> course{*this, topics::kCourse};
+  Forged<msg::CourseOffer> course_offer{*this, topics::kCourseOffer};
+  Forged<msg::Course> shared_course{*this, topics::kSharedCourse};
+  Forged<msg::CourseOffer> shared_offer{*this, topics::kSharedCourseOffer};
 };
 
 /// A false message that must not disturb any robot for more than a moment (PROTOCOL.md, "Hostile messages").

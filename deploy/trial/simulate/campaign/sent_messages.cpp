@@ -7,6 +7,7 @@
 
 #include "agents/agent/obstacle_list_decoder.hpp"
 #include "agents/agent/received_page.hpp"
+#include "common/messaging/course_codec.hpp"
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/observation_codec.hpp"
 #include "common/messaging/order_codec.hpp"
@@ -84,6 +85,10 @@ SentMessages::SentMessages(Bus& bus, const Scenario& scenario) : bus_(bus), begi
   check(topics::kOrderMemory);
   check(topics::kAgentOrders);
   check(topics::kOrderStatus);
+  check(topics::kCourse);
+  check(topics::kCourseOffer);
+  check(topics::kSharedCourse);
+  check(topics::kSharedCourseOffer);
   check(topics::kObstacles);
   for (const RobotSpec& robot : scenario.robots) {
     check(topics::kFeedback, robot.id);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/messaging/course_codec.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
@@ -239,6 +240,36 @@ TEST_CASE("invalid ledger pages, and invalid versions on valid pages, are counte
   CHECK(send([](msg::LedgerPage& m) { m.page_index(kMaxRobots); }) == 1);
   CHECK(send([](msg::LedgerPage& m) { m.epoch(kHuge); }) == 1);
   CHECK(send([](msg::LedgerPage& m) { m.versions()[0].vx_mps(kNan); }) == 1);
+}
+
+DrivingCourse course_of(RobotId robot) {
+  DrivingCourse course;
+  course.robot = robot;
+  course.planned_at = course.start = kBegin;
+  course.states = {{{1, 0}, {0, 0}}};
+  return course;
+}
+
+TEST_CASE("invalid courses and offers that a coordinator relays are counted, and all that agents send") {
+  NodeFixture f;
+  const auto send = [&](auto spoil) {
+    msg::Course course = encode(course_of(kRobot + 1));
+    course.header().sender(kCoordinator);
+    return f.send_invalidated(topics::kSharedCourse, course, spoil);
+  };
+  CHECK(send([](msg::Course&) {}) == 0);
+  CHECK(send([](msg::Course& m) { m.planned_at_ns(0); }) == 1);
+  CHECK(send([](msg::Course& m) { m.points()[0].x_m(static_cast<float>(kNan)); }) == 1);
+  CHECK(send([](msg::Course& m) { m.header().sender(kRobot + 1); }) == 1);
+  const auto offer = [&](auto spoil) {
+    msg::CourseOffer offered = encode(CourseOffer{course_of(kRobot), kBegin, kRobot + 1});
+    offered.header().sender(kCoordinator);
+    return f.send_invalidated(topics::kSharedCourseOffer, offered, spoil);
+  };
+  CHECK(offer([](msg::CourseOffer&) {}) == 0);
+  CHECK(offer([](msg::CourseOffer& m) { m.points().clear(); }) == 1);
+  CHECK(offer([](msg::CourseOffer& m) { m.by(kMaxRobots); }) == 1);
+  CHECK(offer([](msg::CourseOffer& m) { m.header().sender(kRobot + 1); }) == 1);
 }
 
 TEST_CASE("an agent repeats announced orders immediately, but at most ten times per second") {

@@ -2,6 +2,7 @@
 #include "agents/navigation/right_of_way.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "common/random/rng.hpp"
@@ -12,6 +13,33 @@ namespace {
 
 constexpr Duration kPeriod = std::chrono::seconds(30);
 Time in_period(int number) { return Time(number * kPeriod + kPeriod / 2); }
+
+/// The beginning of a quarter of a second within which due times are equal, and of ten seconds in which ids
+/// count up.
+constexpr Time kInterval = time_from_ns(1'800'000'000'000'000'000);
+
+/// The course of a robot that is due this long after kInterval.
+DrivingCourse course_due(RobotId robot, Duration due) {
+  DrivingCourse course;
+  course.robot = robot;
+  course.due = kInterval + due;
+  return course;
+}
+
+/// Any time, as hostile as may be.
+Time hostile_time(Rng& rng) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  switch (rng.below(4)) {
+    case 0:
+      return time_from_ns(static_cast<std::int64_t>(rng.bits()));
+    case 1:
+      return time_from_ns(rng.chance(0.5) ? Limits::max() : Limits::min());
+    case 2:
+      return time_from_ns(static_cast<std::int64_t>(rng.below(7)) - 3);
+    default:
+      return kInterval + from_seconds(rng.uniform(-0.5, 0.5));
+  }
+}
 
 }  // namespace
 
@@ -42,6 +70,66 @@ TEST_CASE("exactly one of two robots goes first, and a robot before which anothe
       })));
     std::ranges::sort(ahead);
     for (int i = 0; i < 16; ++i) CHECK(ahead[static_cast<std::size_t>(i)] == i);
+  }
+}
+
+TEST_CASE("of two courses, the one whose robot is due in an earlier quarter of a second precedes") {
+  using namespace std::chrono_literals;
+  CHECK(precedes(course_due(7, 0ms), course_due(3, 250ms)));
+  CHECK_FALSE(precedes(course_due(3, 250ms), course_due(7, 0ms)));
+  CHECK(precedes(course_due(7, 250ms - 1ns), course_due(3, 250ms)));
+  CHECK_FALSE(precedes(course_due(3, 250ms), course_due(7, 250ms - 1ns)));
+  CHECK(precedes(course_due(3, -1ns), course_due(7, 0ms)));
+  CHECK(precedes(course_due(7, -1ns), course_due(3, 0ms)));
+}
+
+TEST_CASE("courses due in the same quarter of a second go by ids, which count up and down in turn") {
+  using namespace std::chrono_literals;
+  for (const Duration up : {0ms, 250ms, 9750ms, 20000ms}) {
+    CAPTURE(to_seconds(up));
+    CHECK(precedes(course_due(3, up + 250ms - 1ns), course_due(7, up)));
+    CHECK_FALSE(precedes(course_due(7, up), course_due(3, up + 250ms - 1ns)));
+  }
+  for (const Duration down : {-250ms, 10000ms, 19750ms}) {
+    CAPTURE(to_seconds(down));
+    CHECK(precedes(course_due(7, down + 250ms - 1ns), course_due(3, down)));
+    CHECK_FALSE(precedes(course_due(3, down), course_due(7, down + 250ms - 1ns)));
+  }
+  CHECK_FALSE(precedes(course_due(3, 0ms), course_due(3, 0ms)));
+}
+
+TEST_CASE("a robot that plans another course keeps its place in the order of courses") {
+  using namespace std::chrono_literals;
+  DrivingCourse other = course_due(3, 250ms), course = course_due(7, 0ms);
+  other.planned_at = other.start = kInterval - 3s;
+  for (const Duration later : {0s, 1s, 60s}) {
+    CAPTURE(to_seconds(later));
+    course.planned_at = course.start = other.planned_at + later;
+    CHECK(precedes(course, other));
+    CHECK_FALSE(precedes(other, course));
+  }
+}
+
+TEST_CASE("all courses are in one order, whichever times they contain") {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    std::vector<DrivingCourse> courses(12);
+    for (RobotId robot = 0; robot < courses.size(); ++robot) {
+      courses[robot].robot = robot;
+      courses[robot].planned_at = hostile_time(rng);
+      courses[robot].due = hostile_time(rng);
+    }
+    std::vector<std::ptrdiff_t> ahead, expected;  // number of courses that precede each course
+    for (const DrivingCourse& course : courses) {
+      expected.push_back(static_cast<std::ptrdiff_t>(expected.size()));
+      ahead.push_back(std::ranges::count_if(
+          courses, [&](const DrivingCourse& other) { return precedes(other, course); }));
+      for (const DrivingCourse& other : courses)
+        if (other.robot != course.robot) CHECK(precedes(other, course) != precedes(course, other));
+    }
+    std::ranges::sort(ahead);
+    CHECK(ahead == expected);
   }
 }
 

@@ -199,7 +199,7 @@ void check_reported(const std::map<Pair, Judgement>& expected, const std::map<Pa
     CHECK(expected.contains(pair));
     CHECK(times == 1);
   }
-  CHECK(count(expected, Judgement::kTooClose) >= 10);
+  CHECK(count(expected, Judgement::kTooClose) >= 5);
   CHECK(count(expected, Judgement::kBorderline) < count(expected, Judgement::kTooClose) / 5);
 }
 

@@ -301,12 +301,18 @@ TEST_CASE("a viewer gets all messages of the channel that it inspects and no oth
   MonitoredRun run;
   run.system.run_for(500ms);
   CHECK(run.viewer.inspected == 0);
+  std::size_t reports = 0;
+  run.system.observer_bus().subscribe(topics::kFeedback, RobotId{0},
+                                      [&](const msg::Feedback&) { ++reports; });
   CHECK(run.send(R"({"op":"inspect","channel":"feedback/0"})"));
   run.system.run_for(2s);
   const Json& batch = run.viewer.states.at("messages");
   CHECK(batch.at("channel") == "feedback/0");
   CHECK(batch.at("messages")[0].at("message").at("robot") == 0);
-  CHECK(run.viewer.inspected == Approx(2 / to_seconds(run.scenario.cycle)).epsilon(0.05));
+  // The last ones may not have been shown yet.
+  CHECK(run.viewer.inspected <= reports);
+  CHECK(run.viewer.inspected + 5 > reports);
+  CHECK(reports > 100);
   CHECK(run.send(R"({"op":"inspect","channel":null})"));
   const std::size_t before = run.viewer.inspected;
   run.system.run_for(500ms);

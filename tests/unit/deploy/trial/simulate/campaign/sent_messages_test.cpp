@@ -90,6 +90,20 @@ TEST_CASE("a malformed message of an agent is named whatever its topic") {
     orders.process(kRobot);
     check_named(topics::kAgentOrders, kRobot, orders, [](auto& m) { m.order_count(1); });
   }
+  SECTION("course") {
+    msg::Course course;
+    course.robot(kRobot);
+    course.planned_at_ns(1);
+    check_named(topics::kCourse, kRobot, course, [](auto& m) { m.planned_at_ns(0); });
+  }
+  SECTION("offer of a course") {
+    msg::CourseOffer offer;
+    offer.by(kRobot);
+    offer.planned_at_ns(1);
+    offer.start_ns(1'000'000'000'000);
+    offer.points().resize(2);
+    check_named(topics::kCourseOffer, kRobot, offer, [](auto& m) { m.points()[1].x_m(10); });
+  }
   SECTION("order status") {
     msg::OrderStatus status;
     status.robot(kRobot);
@@ -121,6 +135,19 @@ TEST_CASE("a malformed message of a coordinator is named whatever its topic") {
     msg::OrderMemory orders;
     orders.process(coordinator);
     check_named(topics::kOrderMemory, coordinator, orders, [](auto& m) { m.order_count(1); });
+  }
+  SECTION("relayed course") {
+    msg::Course course;
+    course.robot(kRobot);
+    course.planned_at_ns(1);
+    check_named(topics::kSharedCourse, coordinator, course, [](auto& m) { m.planned_at_ns(0); });
+  }
+  SECTION("relayed offer of a course") {
+    msg::CourseOffer offer;
+    offer.planned_at_ns(1);
+    offer.start_ns(1'000'000'000'000);
+    offer.points().resize(2);
+    check_named(topics::kSharedCourseOffer, coordinator, offer, [](auto& m) { m.by(kMaxRobots); });
   }
 }
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/course_book.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace sidestep {
+namespace {
+
+/// Courses are repeated more often than this.
+constexpr Duration kMaxSilence{1'500'000'000};
+/// Offers are taken soon or never.
+constexpr Duration kOfferAge{200'000'000};
+constexpr std::size_t kMaxNearby = 40;  ///< number of nearest courses that are considered
+/// Number of offers that are kept, in total and of one robot.
+constexpr std::size_t kMaxOffers = 64, kMaxOffersOfRobot = 16;
+/// Courses start within a few cycles. No course takes a minute.
+constexpr Duration kMaxLead{5'000'000'000}, kMaxAge{60'000'000'000};
+/// Courses are rounded, and a robot may be a little faster for a moment.
+constexpr double kSpeedTolerance_mps = 0.1;
+
+/// Whether the time since a message is beyond a bound. A time in the future was recorded before the clock was
+/// set back.
+bool is_older(Time heard_at, Duration bound, Time now) { return std::chrono::abs(now - heard_at) > bound; }
+
+}  // namespace
+
+CourseBook::CourseBook(RobotId self, const FloorRules& rules)
+    : self_(self), field_(rules.field), max_speed_mps_(rules.limits.speed_mps + kSpeedTolerance_mps) {}
+
+bool CourseBook::is_of_use(const DrivingCourse& course, Time now) const {
+  if (course.is_empty()) return true;
+  if (course.start > now + kMaxLead || course.start < now - kMaxAge) return false;
+  const double max_step_m = max_speed_mps_ * to_seconds(DrivingCourse::kSample);
+  const State* last = nullptr;
+  for (const State& state : course.states) {
+    const bool is_possible = field_.contains(state.position_m, 0) &&
+                             state.velocity_mps.norm() <= max_speed_mps_ &&
+                             (!last || (state.position_m - last->position_m).norm() <= max_step_m);
+    if (!is_possible) return false;
+    last = &state;
+  }
+  return true;
+}
+
+void CourseBook::on_course(std::shared_ptr<const DrivingCourse> course, Time now) {
+  if (course->robot == self_ || !is_of_use(*course, now)) return;
+  Heard& heard = courses_[course->robot];
+  const bool is_late = heard.course && course->planned_at < heard.course->planned_at &&
+                       !is_older(heard.heard_at, kMaxSilence, now);
+  if (!is_late) heard = {std::move(course), now};
+}
+
+void CourseBook::on_offer(std::shared_ptr<const CourseOffer> offer, Time now) {
+  if (offer->by == self_ || !is_of_use(offer->course, now)) return;
+  std::erase_if(offers_, [&](const HeardOffer& heard) {
+    return is_older(heard.heard_at, kOfferAge, now) ||
+           (heard.offer->by == offer->by && heard.offer->course.robot == offer->course.robot);
+  });
+  const auto of_robot =
+      std::ranges::count(offers_, offer->by, [](const HeardOffer& heard) { return heard.offer->by; });
+  if (offers_.size() < kMaxOffers && static_cast<std::size_t>(of_robot) < kMaxOffersOfRobot)
+    offers_.push_back({std::move(offer), now});
+}
+
+std::span<const DrivingCourse* const> CourseBook::nearby(const Vec2& centre_m, double horizon_m, Time now) {
+  std::erase_if(courses_,
+                [&](const auto& entry) { return is_older(entry.second.heard_at, kMaxSilence, now); });
+  nearby_.clear();
+  for (const auto& [robot, heard] : courses_) {
+    const DrivingCourse& course = *heard.course;
+    if (!course.is_empty() && (course.position_at(now) - centre_m).norm() <= horizon_m)
+      nearby_.push_back(&course);
+  }
+  if (nearby_.size() <= kMaxNearby) return nearby_;
+  const auto distance_m = [&](const DrivingCourse* course) {
+    return (course->position_at(now) - centre_m).norm();
+  };
+  std::ranges::nth_element(nearby_, nearby_.begin() + kMaxNearby, {}, distance_m);
+  nearby_.resize(kMaxNearby);
+  std::ranges::sort(nearby_, {}, &DrivingCourse::robot);
+  return nearby_;
+}
+
+std::span<const HeardOffer> CourseBook::offers(Time now) {
+  std::erase_if(offers_, [&](const HeardOffer& heard) { return is_older(heard.heard_at, kOfferAge, now); });
+  return offers_;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/motion/driving_course.hpp"
+#include "common/motion/floor_rules.hpp"
+
+namespace sidestep {
+
+/// An offer, and when it was heard.
+struct HeardOffer {
+  std::shared_ptr<const CourseOffer> offer;
+  Time heard_at{};
+};
+
+/// The courses that the agents of other robots have published, and the offers of new courses. Inputs: the
+/// decoded messages. Courses that are not repeated are forgotten, because their agents may have ended.
+class CourseBook {
+ public:
+  CourseBook(RobotId self, const FloorRules& rules);
+
+  /// Stores another robot's course, unless a later one is known; an empty course removes it. Ignores courses
+  /// that no robot can drive on this floor, and those that start too long before or after `now`, because
+  /// everybody has to compare its own course with them.
+  void on_course(std::shared_ptr<const DrivingCourse> course, Time now);
+  void on_offer(std::shared_ptr<const CourseOffer> offer, Time now);
+
+  /// The courses of robots that are now within `horizon_m`, in the order of their numbers. Valid until the
+  /// next call.
+  std::span<const DrivingCourse* const> nearby(const Vec2& centre_m, double horizon_m, Time now);
+  /// The offers that are recent enough to be taken. Valid until the next call.
+  std::span<const HeardOffer> offers(Time now);
+
+ private:
+  struct Heard {
+    std::shared_ptr<const DrivingCourse> course;
+    Time heard_at{};
+  };
+
+  /// Whether a robot can drive the course, and it is about the present.
+  bool is_of_use(const DrivingCourse& course, Time now) const;
+
+  const RobotId self_;
+  const Field field_;
+  const double max_speed_mps_;
+  std::map<RobotId, Heard> courses_;
+  std::vector<HeardOffer> offers_;
+  std::vector<const DrivingCourse*> nearby_;
+};
+
+}  // namespace sidestep
