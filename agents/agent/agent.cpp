@@ -35,7 +35,10 @@ bool Agent::on_robot_report(const RobotReport& robot_report) {
 }
 
 void Agent::update_goal(const RobotReport& robot_report) {
-  if (negotiation_.is_absent()) return orders_.on_absence();
+  if (negotiation_.is_absent()) {
+    planner_.on_absence();
+    return orders_.on_absence();
+  }
   if (!robot_report.is_lifted) placement_m_.reset();  // the robot has been put down
   if (orders_.on_execution(negotiation_.held().executing().trajectory, robot_report.valid_at))
     planner_.on_new_goal();
@@ -97,7 +100,10 @@ WaitReason Agent::wait_reason(Time now) const {
 
 std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps, Duration max_lag) {
   course_start_.reset();
-  if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) {
+  const WaitReason reason = wait_reason(now);
+  // A robot without an order steps aside for others.
+  const bool is_idle = reason == WaitReason::kNoOrder && observations_.wait_reason(now) == WaitReason::kNone;
+  if ((reason != WaitReason::kNone && !is_idle) || negotiation_.is_absent()) {
     planner_.pause(now);
     return std::nullopt;
   }
@@ -164,6 +170,10 @@ OrderReport Agent::order_report() const {
   OrderReport report = assignment().report();
   if (!assignment().goal()) return report;
   report.blockage = planner_.lasting_blockage();
+  // A robot that has carried out its order only waits for others to pass.
+  if (report.progress.is_finished() && report.blockage &&
+      report.blockage->reason == msg::BlockReason::BLOCK_PASSING_ROBOT)
+    report.blockage.reset();
   const bool has_cause = report.blockage && report.blockage->reason != msg::BlockReason::BLOCK_NO_PATH;
   if (const auto stranger = strangers_.lasting(); stranger && !has_cause) report.blockage = stranger;
   return report;

@@ -118,7 +118,8 @@ class Agent {
     return course_start_ ? planner_.course_offers() : std::span<const CourseOffer>{};
   }
 
-  /// The reason why plan() returns nullopt now. Does not consider the robot's own versions.
+  /// The reason why plan() returns nullopt now. Does not consider the robot's own versions. A robot that
+  /// waits for an order nevertheless steps aside for others.
   WaitReason wait_reason(Time now) const;
   AgentActivity activity(Time now) const;
 

@@ -23,8 +23,8 @@ struct OtherAssignment {
   std::optional<Vec2> goal_m{};  ///< goal of that order; nullopt if the goal is given by the scenario
 };
 
-/// Decides which order a robot carries out: its unfinished order of the highest rank. A robot without an
-/// order stays where it is, and returns there if something moves it away.
+/// Decides which order a robot carries out: its unfinished order of the highest rank. A robot that has
+/// finished its order stays at the goal, and returns there if something moves it away.
 class Assignment {
  public:
   /// `scenario_goals` are the robot's goals in the scenario, for orders that name none. Orders of robots that

@@ -134,7 +134,7 @@ Intent IntentPlanner::steer_locally(Query query, const RouteToTarget& routes, Ne
     bodies_nearby_.push_back({state_if_continued(version->trajectory, query.start).position_m,
                               rules_.radius_m + version->inflation_m});
   const LocalChoice choice = local_driver_->choose(
-      {query.at_start, path, &routes.obstacles()->world(), bodies_nearby_, to_seconds(query.max_hold)});
+      {query.at_start, path, &routes.known_obstacles()->world(), bodies_nearby_, to_seconds(query.max_hold)});
   route.waypoint_m = choice.target_m;
   if (!choice.velocity_mps) return steer(query, routes, neighbours);
   preferred_mps_.assign(choice.preferred_mps.begin(), choice.preferred_mps.end());

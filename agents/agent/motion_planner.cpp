@@ -117,11 +117,12 @@ std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
   if (query.now < last_plan_) restart_timers(query.now);
   last_plan_ = query.now;
   course_query_.reset();
-  passage_.update(query.now, query.observations, query.assignment, route_, query.rng);
+  passage_.update(query.now, home_m(query), query.observations, query.assignment, route_, query.rng);
   // Inflation ends only when the robot is at rest. If the robot drove on with inflation, it might never fit
   // through narrow places.
   if (base.inflation_m > 0) pause(query.now);
   if (base.inflation_m > 0 || query.start <= base.trajectory.start()) return std::nullopt;
+  if (passage_.place_m() && !query.assignment.goal() && !home_m_) home_m_ = base.trajectory.rest_position_m();
   const Vec2 target = target_m(query);
   const std::optional<Route> route = find_route(query, target);
   if (!route) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
   Intent intent = course ? intent_of(*course, query.start)
                          : intents_.choose({at_start, query.start, *route, hold_bounds(query.lead).max},
                                            route_, query.observations.neighbours());
-  intent.target_m = target;
+  intent.target_m = passage_.is_idle() ? home_m(query) : target;
   return follow_intent(query, intent, at_start, *route, course);
 }
 
@@ -146,14 +147,21 @@ void MotionPlanner::restart_timers(Time now) {
 
 Vec2 MotionPlanner::target_m(const Query& query) const {
   if (const std::optional<Vec2> place = passage_.place_m()) return *place;
-  const Goal* goal = query.assignment.goal();
-  return goal ? goal->position_m : query.base.trajectory.rest_position_m();
+  return home_m(query);
+}
+
+Vec2 MotionPlanner::home_m(const Query& query) const {
+  if (const Goal* goal = query.assignment.goal()) return goal->position_m;
+  return home_m_.value_or(query.base.trajectory.rest_position_m());
 }
 
 std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& target) {
   const bool gives_way = passage_.place_m().has_value();
   if (will_rest_at(query.base, target) && !is_kept_out(target)) {
-    if (!gives_way) blockage_.clear();
+    if (!gives_way) {
+      blockage_.clear();
+      home_m_.reset();
+    }
     route_.on_arrival();
     return std::nullopt;
   }
@@ -243,7 +251,7 @@ const DrivingCourse* MotionPlanner::follow_course(const Query& query, const Stat
     if (courses_) courses_->give_up();
   }
   if (query.now < no_course_until_) return nullptr;
-  if (!courses_) courses_.emplace(robot_, rules_, route_.obstacles()->fixed_world());
+  if (!courses_) courses_.emplace(robot_, rules_, route_.obstacles().fixed_world());
   offers_.clear();
   for (const HeardOffer& heard : query.courses.offers(query.now)) offers_.push_back(heard.offer.get());
   MotionLimits limits = rules_.limits;
@@ -333,11 +341,17 @@ void MotionPlanner::on_search(const MotionPlan& plan, bool desired_is_clear, Tim
   intents_.on_search(plan.intent, desired_is_clear, plan.query.at_start.velocity_mps.norm(), now);
 }
 
+void MotionPlanner::on_absence() {
+  home_m_.reset();
+  passage_.restart(last_plan_);
+}
+
 void MotionPlanner::on_new_goal() {
   route_.forget();
   intents_.on_new_goal();
   if (courses_) courses_->give_up();
   blockage_.clear();
+  home_m_.reset();
   passage_.restart(last_plan_);
 }
 
@@ -354,6 +368,7 @@ bool MotionPlanner::is_kept_out(const Vec2& position_m) const {
 
 std::optional<double> MotionPlanner::remaining_s(const Assignment& assignment, bool has_arrived) const {
   const Goal* first = assignment.goal();
+  if (first && passage_.is_idle() && passage_.place_m()) return 0;
   if (!first || blockage_.is_blocked() || passage_.place_m() || (!route_.has_route() && !has_arrived))
     return std::nullopt;
   if (assignment.report().progress.is_finished()) return 0;

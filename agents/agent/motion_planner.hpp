@@ -52,7 +52,7 @@ class MotionPlanner {
 
   /// Plans the motion from `start` on. Returns nullopt if the base already ends where the robot wants to be,
   /// if the search for a route takes longer than this cycle, or if the robot must come to rest first.
-  /// Precondition: the agent's wait_reason() is kNone.
+  /// Precondition: the agent waits for nothing but an order.
   [[nodiscard]] std::optional<MotionPlan> plan(const Query& query);
   /// Processes the result of the search for a plan.
   void on_search(const MotionPlan& plan, bool desired_is_clear, Time now);
@@ -68,6 +68,8 @@ class MotionPlanner {
   /// The offers that the last call of plan_courses() made to others.
   std::span<const CourseOffer> course_offers() const;
 
+  /// Call it when the robot is lifted: one without a goal stays where it is put down.
+  void on_absence();
   /// Call it when the robot gets another goal.
   void on_new_goal();
   void set_zones(std::span<const Order> zones);
@@ -86,6 +88,8 @@ class MotionPlanner {
   void restart_timers(Time now);
   /// The robot's target: the place where it gives way, its goal, or the end of its base.
   Vec2 target_m(const Query& query) const;
+  /// Where the robot wants to rest in the end.
+  Vec2 home_m(const Query& query) const;
   /// The route to the target; nullopt if the robot is at the target, or no route is known in this cycle.
   std::optional<Route> find_route(const Query& query, const Vec2& target_m);
   void update_blockage(const Route& route, Time now);
@@ -127,6 +131,7 @@ class MotionPlanner {
     Time since{}, seen_at{};
   };
   std::map<RobotId, Resting> resting_;
+  std::optional<Vec2> home_m_;  // where the robot was before it stepped aside; used if it has no goal
   Time no_course_until_{}, last_plan_{};
 };
 

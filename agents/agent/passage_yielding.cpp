@@ -2,7 +2,9 @@
 #include "agents/agent/passage_yielding.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
+#include <utility>
 
 #include "agents/agent/planning_distances.hpp"
 
@@ -12,6 +14,14 @@ namespace {
 // Where robots cannot pass each other, a robot has the right of way for the time that it needs to drive this
 // far, plus a fixed time.
 constexpr double kPassageDistance_m = 40, kPassageExtra_s = 10;
+/// An idle robot that has stepped aside in vain waits this long until it tries again, and twice as long each
+/// further time.
+constexpr Duration kFirstPause{30'000'000'000}, kLongestPause{600'000'000'000};
+/// A robot at rest for longer than this may be waiting.
+constexpr Duration kWaitsAfter{500'000'000};
+/// Interval between two looks of an idle robot for robots that wait.
+constexpr Duration kLookPeriod{250'000'000};
+constexpr std::size_t kMaxWaiting = 8;  ///< number of nearest robots at rest that are considered
 /// Longer trips of other robots are considered only up to the next waypoint.
 constexpr double kLongestTrip_m = 20;
 
@@ -23,16 +33,29 @@ PassageYielding::PassageYielding(const FloorRules& rules)
       give_way_({rules.field, rules.radius_m, required_separation_m(rules), rules.min_separation_m()},
                 {.give_up_after = passage_period_ * 2 / 3}) {}
 
-void PassageYielding::update(Time now, Observations& observations, const Assignment& assignment,
-                             const RouteToTarget& route, Rng& rng) {
-  if (!assignment.goal() || assignment.report().progress.is_finished()) return give_way_.restart(now);
+void PassageYielding::update(Time now, const Vec2& home_m, Observations& observations,
+                             const Assignment& assignment, RouteToTarget& route, Rng& rng) {
+  const bool is_idle = !assignment.goal() || assignment.report().progress.is_finished();
+  if (std::exchange(is_idle_, is_idle) != is_idle) give_way_.restart(now);
+  if (is_idle && std::chrono::abs(now - looked_at_) >= kLookPeriod) {
+    looked_at_ = now;
+    is_waited_for_ = has_waiting_neighbour(now, observations, assignment);
+  }
+  home_m_ = home_m;
+  const bool is_paused = now < paused_until_ && paused_until_ - now <= pause_;
+  if (is_idle && !give_way_.place_m() && (!is_waited_for_ || is_paused)) return give_way_.restart(now);
   const double remaining_m =
-      route.has_route() ? remaining_to_goal_m_ : std::numeric_limits<double>::infinity();
-  const RouteObstacles* obstacles = route.obstacles();
-  if (!give_way_.track_progress(now, remaining_m) || !obstacles) return;
-  if (give_way_.is_searching()) return give_way_.search(now, rng);
+      !is_idle && route.has_route() ? remaining_to_goal_m_ : std::numeric_limits<double>::infinity();
+  if (!give_way_.track_progress(now, remaining_m)) return;
+  if (give_way_.is_searching()) {
+    give_way_.search(now, rng);
+    if (!is_idle || !give_way_.has_given_up()) return;
+    pause_ = std::min(std::max(2 * pause_, kFirstPause), kLongestPause);
+    paused_until_ = now + pause_;
+    return;
+  }
   give_way_.begin_search(now, observations.own().estimate().position_m,
-                         others_in_passages(now, observations, assignment), obstacles->fixed_world());
+                         others_in_passages(now, observations, assignment), route.obstacles().fixed_world());
 }
 
 void PassageYielding::on_route(const Route& route) {
@@ -64,13 +87,38 @@ OtherRobot PassageYielding::other_nearby(const Version& version, Time now,
                                          const Assignment& assignment) const {
   OtherRobot other{version.robot, true, version.trajectory.rest_position_m()};
   const OtherAssignment orders = assignment.other(version.robot);
-  if (!version.intent || orders.is_held) return other;
-  other.goals_m = {version.intent->goal_m, version.intent->target_m};
+  other.is_held = orders.is_held;
+  if (orders.is_held || (!is_idle_ && !version.intent)) return other;
+  if (version.intent) other.goals_m = {version.intent->goal_m, version.intent->target_m};
+  // The intent may be older than the order.
+  if (is_idle_ && orders.goal_m) other.goals_m[1] = orders.goal_m;
   // A route across a large floor would take too long to plan.
   for (std::optional<Vec2>& goal : other.goals_m)
-    if ((*goal - other.position_m).norm() > kLongestTrip_m) goal = version.intent->waypoint_m;
-  other.has_right_of_way = assignment.yields_to({version.robot, orders.number}, now, passage_period_);
+    if (goal && (*goal - other.position_m).norm() > kLongestTrip_m)
+      goal = version.intent ? std::optional(version.intent->waypoint_m) : std::nullopt;
+  other.returns = is_idle_ && !orders.has_drive_order;
+  other.has_right_of_way =
+      is_idle_ ? orders.has_drive_order && !wants_place_of_this_robot(version, orders)
+               : orders.has_drive_order &&
+                     assignment.yields_to({version.robot, orders.number}, now, passage_period_);
   return other;
+}
+
+bool PassageYielding::wants_place_of_this_robot(const Version& version, const OtherAssignment& orders) const {
+  std::optional<Vec2> goal_m = orders.goal_m;
+  if (!goal_m && version.intent) goal_m = version.intent->target_m;
+  return goal_m && (*goal_m - home_m_).norm() < rules_.min_separation_m();
+}
+
+bool PassageYielding::has_waiting_neighbour(Time now, Observations& observations,
+                                            const Assignment& assignment) const {
+  const auto waits = [&](const Neighbours::Stationary& other) {
+    const OtherAssignment orders = assignment.other(other.robot);
+    return orders.has_drive_order && !orders.is_held;
+  };
+  return std::ranges::any_of(observations.neighbours().find_stationary(
+                                 now - kWaitsAfter, observations.own().estimate().position_m, kMaxWaiting),
+                             waits);
 }
 
 }  // namespace sidestep

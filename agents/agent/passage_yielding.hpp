@@ -11,24 +11,30 @@
 
 namespace sidestep {
 
-/// Decides whether a robot that makes no progress leaves a passage for another robot. Inputs: the versions
-/// and orders of the robots nearby, and the robot's own order and route. Output: the place where the robot
-/// goes instead of its goal.
+/// Decides whether a robot leaves a passage for another robot: a robot that makes no progress, or an idle
+/// one. Robots are idle that have arrived or have no order; they go out of the way of every robot that waits.
+/// Inputs: the versions and orders of the robots nearby, and the robot's own order and route. Output: the
+/// place where the robot goes instead of its goal.
 class PassageYielding {
  public:
   /// `rules` must outlive this object.
   explicit PassageYielding(const FloorRules& rules);
 
-  /// Call it once per planning.
-  void update(Time now, Observations& observations, const Assignment& assignment, const RouteToTarget& route,
-              Rng& rng);
+  /// Call it once per planning. `home_m`: where the robot rests if it is idle and in nobody's way.
+  void update(Time now, const Vec2& home_m, Observations& observations, const Assignment& assignment,
+              RouteToTarget& route, Rng& rng);
   /// Measures the robot's progress from the length of a new route to its target.
   void on_route(const Route& route);
   /// Forgets the place, because the robot has another goal or its clock was set back.
-  void restart(Time now) { give_way_.restart(now); }
+  void restart(Time now) {
+    give_way_.restart(now);
+    pause_ = {};
+  }
 
   /// The place where the robot should go instead of its goal; nullopt if it should go to its goal.
   std::optional<Vec2> place_m() const { return give_way_.place_m(); }
+  /// Whether the robot has arrived or has no order.
+  bool is_idle() const { return is_idle_; }
   /// The robot for which this robot waits at that place; nullopt if it does not give way.
   std::optional<Blockage> blockage() const;
 
@@ -37,10 +43,20 @@ class PassageYielding {
   std::vector<OtherRobot> others_in_passages(Time now, Observations& observations,
                                              const Assignment& assignment) const;
   OtherRobot other_nearby(const Version& version, Time now, const Assignment& assignment) const;
+  /// Whether the goal of another robot is where this idle robot rests, to which it would come back.
+  bool wants_place_of_this_robot(const Version& version, const OtherAssignment& orders) const;
+  /// Whether a robot nearby that has an order to drive is at rest.
+  bool has_waiting_neighbour(Time now, Observations& observations, const Assignment& assignment) const;
 
   const FloorRules& rules_;
   Duration passage_period_;  // how long a robot has the right of way in a passage
   GiveWay give_way_;
+  bool is_idle_ = false, is_waited_for_ = false;
+  Vec2 home_m_{0, 0};
+  // An idle robot that stepped aside in vain does not do so again before this time.
+  Time paused_until_{};
+  Duration pause_{};
+  Time looked_at_{};  // when is_waited_for_ was determined
   // Remaining length of the last route; infinite if it does not lead to the goal.
   double remaining_to_goal_m_ = 0;
 };

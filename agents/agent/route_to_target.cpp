@@ -35,9 +35,14 @@ std::optional<Route> RouteToTarget::find(const Query& query, std::span<const Tem
   return route;
 }
 
+const RouteObstacles& RouteToTarget::obstacles() {
+  if (!obstacles_) obstacles_.emplace(rules_, zones_);
+  return *obstacles_;
+}
+
 void RouteToTarget::replan_if_due(const Query& query, std::span<const TemporaryObstacle> temporary) {
   if (!route_planner_) {
-    obstacles_.emplace(rules_, zones_);
+    obstacles();
     route_planner_.emplace(planner_, obstacles_->world(), rules_.field, rules_.radius_m, rules_.margin_m,
                            extra_clearances_m_);
   }

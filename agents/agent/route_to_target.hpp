@@ -49,8 +49,10 @@ class RouteToTarget {
   bool has_route() const { return has_route_; }
   /// Length of the last route; 0 after an arrival.
   double length_m() const { return length_m_; }
-  /// All obstacles that routes avoid; nullptr before the first route.
-  const RouteObstacles* obstacles() const { return obstacles_ ? &*obstacles_ : nullptr; }
+  /// All obstacles that routes avoid. The first one returns nullptr before the first route and the first call
+  /// of the second one.
+  const RouteObstacles* known_obstacles() const { return obstacles_ ? &*obstacles_ : nullptr; }
+  const RouteObstacles& obstacles();
   /// The obstacle that covers the target. Does not set the place to which the robot goes instead.
   /// Precondition: there has been a route.
   Blockage blockage() const;

@@ -5,7 +5,8 @@
 
 namespace sidestep {
 
-/// Why an agent proposes no motion. If several reasons apply, the first in this order is reported.
+/// Why an agent proposes no motion, except to step aside. If several reasons apply, the first in this order
+/// is reported.
 enum class WaitReason : std::uint8_t {
   kNone,
   kNotFenced,            ///< the robot has not acknowledged this agent

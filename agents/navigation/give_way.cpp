@@ -72,15 +72,17 @@ void GiveWay::begin_search(Time now, const Vec2& position_m, std::span<const Oth
   query.range_m = range_m_;
   query.unreachable_m = unreachable_;
   for (const OtherRobot& other : others) {
+    if (other.is_near && other.is_held) fixed.add(search_.disc_at(other.position_m));
     if (other.is_near) {
       query.others_m.push_back(other.position_m);
       remember_trips(other);
     }
     const bool is_passing = std::ranges::find(yields_to_, other.id) != yields_to_.end();
     if (other.has_right_of_way) searched_.push_back(other.id);
-    if (!other.has_right_of_way && !is_passing) continue;
+    if (!other.has_right_of_way && !is_passing && !other.returns) continue;
+    auto& trips = other.returns ? query.returns : query.trips;
     const auto [first, last] = trips_.equal_range(other.id);
-    for (auto trip = first; trip != last; ++trip) query.trips.push_back(trip->second);
+    for (auto trip = first; trip != last; ++trip) trips.push_back(trip->second);
   }
   search_.begin(std::move(query), std::move(fixed));
 }
@@ -108,10 +110,12 @@ void GiveWay::remember_trips(const OtherRobot& other) {
 }
 
 void GiveWay::search(Time now, Rng& rng) {
+  has_given_up_ = false;
   search_.step(rng);
   if (search_.is_active()) return;
   if (!way_.empty()) {
-    if (!search_.is_in_the_way() || now - began_at_ >= settings_.give_up_after) restart(now);
+    has_given_up_ = search_.is_in_the_way() && now - began_at_ >= settings_.give_up_after;
+    if (!search_.is_in_the_way() || has_given_up_) restart(now);
     return;
   }
   if (!search_.is_in_the_way()) {

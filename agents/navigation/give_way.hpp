@@ -26,6 +26,8 @@ struct OtherRobot {
   Vec2 position_m{0, 0};
   std::array<std::optional<Vec2>, 2> goals_m{};
   bool has_right_of_way = false;
+  bool is_held = false;  ///< it stays where it is
+  bool returns = false;  ///< it has no order to drive, and comes back to where it was
 };
 
 /// Makes a robot back out of a passage in which robots cannot pass each other. This applies to a robot that
@@ -50,6 +52,8 @@ class GiveWay {
   /// Performs one step of the search; the last step decides whether to give way. Precondition:
   /// is_searching().
   void search(Time now, Rng& rng);
+  /// Whether the last step of the search has given up a place because nobody had passed.
+  bool has_given_up() const { return has_given_up_; }
   /// The place where the robot should go instead of its goal; nullopt if it should go to its goal.
   std::optional<Vec2> place_m() const { return way_.empty() ? std::nullopt : std::optional(way_.back()); }
   /// The robots that must pass before the robot may leave its place. A robot that is still far away has not
@@ -82,6 +86,7 @@ class GiveWay {
   std::vector<Vec2> unreachable_;       // places that could not be reached
   double nearest_m_ = kInfinity_m;      // smallest distance to the place so far
   Time nearer_at_{};
+  bool has_given_up_ = false;
   std::vector<Vec2> way_;  // from the place that the robot left to the place where it gives way
 };
 

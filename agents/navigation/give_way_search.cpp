@@ -71,9 +71,15 @@ void GiveWaySearch::plan_route(Rng& rng) {
     if (auto route = path(from, to, rng)) routes_.push_back(std::move(*route));
     return;
   }
+  if (next_ < query_.trips.size() + query_.returns.size() && !query_.way.empty()) {
+    const auto& [from, to] = query_.returns[next_++ - query_.trips.size()];
+    const auto route = path(from, to, rng);
+    is_in_the_way_ |= route && is_place_on_route(*route, query_.way.front(), floor_.min_separation_m);
+    return;
+  }
   next_ = 0;
   stage_ = query_.way.empty() ? Stage::kPassages : Stage::kIdle;
-  is_in_the_way_ = std::ranges::any_of(
+  is_in_the_way_ |= std::ranges::any_of(
       routes_, [&](const Way& route) { return is_on_route(route, query_.way, floor_.min_separation_m); });
 }
 

@@ -29,6 +29,9 @@ struct GiveWayQuery {
   std::vector<Vec2> way;
   double range_m = 1;                 ///< maximum distance of places from the robot
   std::vector<Vec2> unreachable_m{};  ///< places near these are not considered
+  /// Trips of idle robots that come back to where they were. The place that the robot left has to be off
+  /// their routes before it comes back itself.
+  std::vector<std::pair<Vec2, Vec2>> returns{};
 };
 
 /// Determines whether a robot is in the way of others that cannot drive around it. If so, finds the nearest
@@ -48,6 +51,9 @@ class GiveWaySearch {
   bool is_active() const { return stage_ != Stage::kIdle; }
   /// Precondition: is_active().
   void step(Rng& rng);
+
+  /// A robot at a position, as an obstacle.
+  Circle disc_at(const Vec2& position_m) const;
 
   // Results, available once no search is active.
   /// Whether the robot at its position blocks another robot that cannot drive around it and all other robots.
@@ -73,8 +79,6 @@ class GiveWaySearch {
   /// The next place of the grid, in square rings around the robot; nullopt if all have been examined.
   std::optional<Vec2> next_of_grid();
   std::optional<Way> path(const Vec2& from_m, const Vec2& to_m, Rng& rng) const;
-  /// A robot at a position, as an obstacle.
-  Circle disc_at(const Vec2& position_m) const;
 
   GiveWayFloor floor_;
   NamedPlanner planner_;

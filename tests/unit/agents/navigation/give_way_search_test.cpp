@@ -87,4 +87,21 @@ TEST_CASE("a robot on its way to a bay is in the way until the other robot has p
   CHECK_FALSE(search.is_in_the_way());  // the other robot can go around
 }
 
+TEST_CASE(
+    "an idle robot comes back when the place that it left is off the route of another one that comes back") {
+  Rng rng(1);
+  const ObstacleWorld corridor({Box{{-2, -2}, {2, -0.15}}, Box{{-2, 0.15}, {2, 2}}});
+  GiveWaySearch search(kFloor);
+  const std::vector<Vec2> way{{0.5, 0}, {2.5, 0}, {2.5, 0.5}};
+  const auto is_in_the_way = [&](const Vec2& other_goal_m) {
+    GiveWayQuery query{way.back(), {}, {}, way, 1};
+    query.returns.push_back({{2.5, -0.5}, other_goal_m});
+    search.begin(query, corridor);
+    finish(search, rng);
+    return search.is_in_the_way();
+  };
+  CHECK(is_in_the_way({-0.5, 0}));  // the other one goes deeper into the corridor
+  CHECK_FALSE(is_in_the_way({1.2, 0}));
+}
+
 }  // namespace sidestep::give_way_search_test

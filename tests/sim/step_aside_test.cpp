@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Robots that have arrived or have no order, where others cannot pass them.
+#include <algorithm>
+#include <fmt/format.h>
+#include <variant>
+
+#include "tests/bench/crowds/crowd_passages.hpp"
+#include "tests/sim/disturbance.hpp"
+#include "tests/sim/ordered_system.hpp"
+
+namespace sidestep::step_aside_test {
+
+using std::chrono::seconds;
+
+constexpr double kBack_m = 0.02;
+/// Robots that drive have goals at least this far from robots without orders.
+constexpr double kFromGoals_m = 0.3;
+constexpr std::uint64_t kScenes = 100;
+
+/// Robots that drive through a corridor, which is mostly too narrow for two, and in which robots without
+/// orders rest.
+Scenario corridor_scene(std::size_t resting, Rng& rng) {
+  PassageSettings settings;
+  settings.robots_per_side = 2;
+  settings.width = {0.3, 0.6};
+  settings.length = {0.6, 1.6};
+  settings.max_shift_m = 0.3;
+  Scenario scene = passage_scene(settings, {6, 3}, rng);
+  const Box below = std::get<Box>(scene.obstacles.at(0)), above = std::get<Box>(scene.obstacles.at(1));
+  const double lateral_m = (above.min_m.y() - below.max_m.y()) / 2 - scene.radius_m - 2 * scene.margin_m;
+  const double middle_m = (above.min_m.y() + below.max_m.y()) / 2, half_m = below.max_m.x();
+  for (std::size_t i = 0; i < resting; ++i) {
+    RobotSpec& robot = scene.robots.at(i);
+    const double along_m =
+        resting == 1 ? rng.uniform(-half_m, half_m) : (i == 0 ? -1 : 1) * rng.uniform(0.15, half_m);
+    robot.start_m = {along_m, middle_m + rng.uniform(-lateral_m, lateral_m)};
+    robot.goals.clear();
+  }
+  return scene;
+}
+
+/// Robots that drive to other arms of a crossing of corridors, in which up to three without orders rest.
+Scenario crossing_scene(Rng& rng) {
+  Scenario scene = junction_scene({0.45, 0.7}, {4.8, 4.8}, rng);
+  const std::size_t resting = 1 + rng.below(3);
+  for (std::size_t i = 0; i < resting; ++i) scene.robots.at(i).goals.clear();
+  const std::vector<RobotSpec> all = scene.robots;
+  std::erase_if(scene.robots, [&](const RobotSpec& robot) {
+    return !robot.goals.empty() && std::ranges::any_of(all, [&](const RobotSpec& other) {
+      return other.goals.empty() && (other.start_m - robot.goals[0].position_m).norm() < kFromGoals_m;
+    });
+  });
+  return scene;
+}
+
+/// Where the robot has to rest in the end: at its goal, or where it started.
+Vec2 place_m(const RobotSpec& robot) {
+  return robot.goals.empty() ? robot.start_m : robot.goals[0].position_m;
+}
+
+bool rests_at_place(const RobotSpec& robot, OrderedSystem& run) {
+  const State& body = run.bodies[robot.id];
+  return (body.position_m - place_m(robot)).norm() < kBack_m && body.velocity_mps.norm() < kAtRest_mps;
+}
+
+/// What became of all scenes.
+struct Outcome {
+  int moved = 0;        ///< number of robots without orders that have stepped aside
+  int not_arrived = 0;  ///< number of robots that did not arrive
+  int not_back = 0;     ///< number of robots without orders that are not back
+  std::string failures;
+};
+
+template <typename Draw>
+Outcome run_scenes(Draw draw) {
+  Outcome outcome;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    const Scenario scene = draw(rng);
+    OrderedSystem run(scene, seed);
+    run.system.run_for(seconds(1));
+    std::set<RobotId> moved;
+    run.run_until(seconds(60), [&] {
+      for (const RobotSpec& robot : scene.robots)
+        if (robot.goals.empty() && !rests_at_place(robot, run)) moved.insert(robot.id);
+      return std::ranges::all_of(scene.robots, [&](const RobotSpec& r) { return rests_at_place(r, run); });
+    });
+    outcome.moved += static_cast<int>(moved.size());
+    for (const RobotSpec& robot : scene.robots) {
+      if (rests_at_place(robot, run)) continue;
+      outcome.failures +=
+          fmt::format("seed {}: robot {} is at {:.2f},{:.2f}\n", seed, robot.id,
+                      run.bodies[robot.id].position_m.x(), run.bodies[robot.id].position_m.y());
+      ++(robot.goals.empty() ? outcome.not_back : outcome.not_arrived);
+    }
+    run.require_safe();
+  }
+  return outcome;
+}
+
+// A robot that rests between two others that wait on both sides of it cannot leave. Two that left a corridor
+// at different ends may come back in the wrong order, and cannot pass each other.
+
+TEST_CASE("a robot without an order in a corridor steps aside, the others arrive, and it comes back",
+          "[slow]") {
+  const Outcome outcome = run_scenes([](Rng& rng) { return corridor_scene(1, rng); });
+  INFO(outcome.failures);
+  CHECK(outcome.not_arrived <= 2);
+  CHECK(outcome.not_back == 0);
+  CHECK(outcome.moved > 30);
+}
+
+TEST_CASE("two robots without orders in a corridor step aside, the others arrive, and they come back",
+          "[slow]") {
+  const Outcome outcome = run_scenes([](Rng& rng) { return corridor_scene(2, rng); });
+  INFO(outcome.failures);
+  CHECK(outcome.not_arrived <= 3);
+  CHECK(outcome.not_back <= 3);
+  CHECK(outcome.moved > 60);
+}
+
+TEST_CASE("robots without orders at a crossing step aside, all others arrive, and they come back", "[slow]") {
+  const Outcome outcome = run_scenes(crossing_scene);
+  INFO(outcome.failures);
+  CHECK(outcome.not_arrived == 0);
+  CHECK(outcome.not_back <= 1);
+  CHECK(outcome.moved > 10);
+}
+
+/// A corridor along x for one robot at a time, and robots without goals.
+Scenario corridor_with(const std::vector<Vec2>& starts_m) {
+  std::string text =
+      "field: {length_m: 6, width_m: 3}\ntime_limit_s: 60\nobstacles:\n"
+      "  - box: {min_m: [-1.5, 0.2], max_m: [1.5, 1.5]}\n"
+      "  - box: {min_m: [-1.5, -1.5], max_m: [1.5, -0.2]}\nrobots:\n";
+  for (std::size_t i = 0; i < starts_m.size(); ++i)
+    text += fmt::format("  - {{id: {}, start_m: [{}, {}]}}\n", i, starts_m[i].x(), starts_m[i].y());
+  return parse_scenario(text, "corridor.yaml");
+}
+
+TEST_CASE("a robot that has arrived steps aside for another one, and returns to its goal") {
+  OrderedSystem run(corridor_with({{-2, 0}, {-2, 0.5}}), 1);
+  run.system.run_for(seconds(1));
+  const auto first = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{{0.5, 0}}});
+  REQUIRE(run.run_until(seconds(10), [&] { return run.arrived.contains(first); }));
+  const auto second = run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{2, 0.5}}});
+  CHECK(run.run_until(seconds(20), [&] { return run.arrived.contains(second); }));
+  CHECK(
+      run.run_until(seconds(10), [&] { return (run.bodies[0].position_m - Vec2(0.5, 0)).norm() < kBack_m; }));
+  run.require_safe();
+}
+
+TEST_CASE("a robot does not step aside for one that a held robot blocks in any case") {
+  OrderedSystem run(corridor_with({{0.3, 0}, {-2, 0.5}, {-0.6, 0}}), 1);
+  run.system.run_for(seconds(1));
+  run.send(msg::OrderKind::ORDER_HOLD, 2, kClient);
+  run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{2, 0.5}}});
+  CHECK_FALSE(
+      run.run_until(seconds(15), [&] { return (run.bodies[0].position_m - Vec2(0.3, 0)).norm() > kBack_m; }));
+  CHECK(run.statuses[1].order_state() == msg::OrderState::ORDER_BLOCKED);
+}
+
+TEST_CASE("a robot without an order that is lifted while it steps aside stays where it is put down") {
+  OrderedSystem run(corridor_with({{0, 0}, {-2, 0.5}}), 1);
+  const Vec2 put_down_m(-2.5, -1);
+  run.system.run_for(seconds(1));
+  const auto order = run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{2.5, 0.5}}});
+  REQUIRE(run.run_until(seconds(15), [&] { return run.bodies[0].position_m.x() > 1; }));
+  run.system.disturb(disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT));
+  run.system.run_for(seconds(1));
+  msg::Disturbance place = disturbance(0, msg::DisturbanceKind::DISTURBANCE_PLACE);
+  place.x_m(put_down_m.x());
+  place.y_m(put_down_m.y());
+  run.system.disturb(place);
+  CHECK(run.run_until(seconds(15), [&] { return run.arrived.contains(order); }));
+  run.system.run_for(seconds(5));
+  CHECK((run.bodies[0].position_m - put_down_m).norm() < kBack_m);
+}
+
+TEST_CASE("a robot that is held does not step aside") {
+  OrderedSystem run(corridor_with({{0, 0}, {-2, 0.5}}), 1);
+  run.system.run_for(seconds(1));
+  run.send(msg::OrderKind::ORDER_HOLD, 0, kClient);
+  run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{2, 0.5}}});
+  CHECK(run.run_until(seconds(15), [&] {
+    const msg::OrderStatus& status = run.statuses[1];
+    return status.order_state() == msg::OrderState::ORDER_BLOCKED && status.blocker() == 0;
+  }));
+  CHECK((run.bodies[0].position_m - Vec2(0, 0)).norm() < kBack_m);
+  run.require_safe();
+}
+
+}  // namespace sidestep::step_aside_test
