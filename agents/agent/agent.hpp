@@ -106,6 +106,7 @@ class Agent {
     if (course_start_) planner_.plan_courses(*course_start_, at_course_start_, rng_);
   }
   void on_course(std::shared_ptr<const DrivingCourse> course, Time now) {
+    courses_.set_place(observations_.own().estimate().position_m);
     courses_.on_course(std::move(course), now);
   }
   void on_course_offer(std::shared_ptr<const CourseOffer> offer, Time now) {

@@ -17,6 +17,9 @@ constexpr std::size_t kMaxNearby = 40;  ///< number of nearest courses that are 
 constexpr std::size_t kMaxOffers = 64, kMaxOffersOfRobot = 16;
 /// Courses start within a few cycles. No course takes a minute.
 constexpr Duration kMaxLead{5'000'000'000}, kMaxAge{60'000'000'000};
+constexpr Duration kForgetPeriod{200'000'000};
+/// Robots that are farther away do not come near before their courses are repeated.
+constexpr double kFar_m = 8;
 /// Courses are rounded, and a robot may be a little faster for a moment.
 constexpr double kSpeedTolerance_mps = 0.1;
 
@@ -44,8 +47,13 @@ bool CourseBook::is_of_use(const DrivingCourse& course, Time now) const {
   return true;
 }
 
+bool CourseBook::is_far(const DrivingCourse& course, Time now) const {
+  return place_m_ && !course.is_empty() && (course.position_at(now) - *place_m_).norm() > kFar_m;
+}
+
 void CourseBook::on_course(std::shared_ptr<const DrivingCourse> course, Time now) {
-  if (course->robot == self_ || !is_of_use(*course, now)) return;
+  if (course->robot == self_ || (!courses_.contains(course->robot) && is_far(*course, now))) return;
+  if (!is_of_use(*course, now)) return;
   Heard& heard = courses_[course->robot];
   const bool is_late = heard.course && course->planned_at < heard.course->planned_at &&
                        !is_older(heard.heard_at, kMaxSilence, now);
@@ -64,12 +72,20 @@ void CourseBook::on_offer(std::shared_ptr<const CourseOffer> offer, Time now) {
     offers_.push_back({std::move(offer), now});
 }
 
+void CourseBook::forget_old(Time now) {
+  if (std::chrono::abs(now - forgot_at_) < kForgetPeriod) return;
+  forgot_at_ = now;
+  std::erase_if(courses_, [&](const auto& entry) {
+    return is_older(entry.second.heard_at, kMaxSilence, now) || is_far(*entry.second.course, now);
+  });
+}
+
 std::span<const DrivingCourse* const> CourseBook::nearby(const Vec2& centre_m, double horizon_m, Time now) {
-  std::erase_if(courses_,
-                [&](const auto& entry) { return is_older(entry.second.heard_at, kMaxSilence, now); });
+  forget_old(now);
   nearby_.clear();
   for (const auto& [robot, heard] : courses_) {
     const DrivingCourse& course = *heard.course;
+    if (is_older(heard.heard_at, kMaxSilence, now)) continue;
     if (!course.is_empty() && (course.position_at(now) - centre_m).norm() <= horizon_m)
       nearby_.push_back(&course);
   }

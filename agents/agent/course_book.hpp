@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,9 @@ class CourseBook {
  public:
   CourseBook(RobotId self, const FloorRules& rules);
 
+  /// From now on, courses of robots that are far from this place are ignored: fleets are large, and courses
+  /// are repeated before their robots come near.
+  void set_place(const Vec2& place_m) { place_m_ = place_m; }
   /// Stores another robot's course, unless a later one is known; an empty course removes it. Ignores courses
   /// that no robot can drive on this floor, and those that start too long before or after `now`, because
   /// everybody has to compare its own course with them.
@@ -47,6 +51,14 @@ class CourseBook {
   const RobotId self_;
   const Field field_;
   const double max_speed_mps_;
+  /// Whether the robot is far from the place.
+  bool is_far(const DrivingCourse& course, Time now) const;
+
+  /// Forgets courses that are not repeated or are far, from time to time.
+  void forget_old(Time now);
+
+  std::optional<Vec2> place_m_;
+  Time forgot_at_{};
   std::map<RobotId, Heard> courses_;
   std::vector<HeardOffer> offers_;
   std::vector<const DrivingCourse*> nearby_;
