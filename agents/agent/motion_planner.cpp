@@ -222,10 +222,10 @@ bool MotionPlanner::may_follow_course(const Query& query, const State& at_start,
                               &UncontrolledBody::reach);
 }
 
-bool MotionPlanner::find_robots_without_course(const Query& query, const Vec2& position_m) {
+bool MotionPlanner::find_robots_without_course(const Query& query, const Vec2& position_m,
+                                               std::span<const DrivingCourse* const> with_course) {
   leaving_m_.clear();
   staying_m_.clear();
-  const auto with_course = query.courses.nearby(position_m, kCourseHorizon_m, query.now);
   for (const Version* version : query.observations.neighbours().newest(position_m, page_horizon_m(rules_))) {
     const bool has_course =
         std::ranges::find(with_course, version->robot, &DrivingCourse::robot) != with_course.end();
@@ -246,7 +246,9 @@ bool MotionPlanner::find_robots_without_course(const Query& query, const Vec2& p
 
 const DrivingCourse* MotionPlanner::follow_course(const Query& query, const State& at_start,
                                                   const Route& route) {
-  if (!may_follow_course(query, at_start, route) || !find_robots_without_course(query, at_start.position_m)) {
+  const auto with_course = query.courses.nearby(at_start.position_m, kCourseHorizon_m, query.now);
+  if (!may_follow_course(query, at_start, route) ||
+      !find_robots_without_course(query, at_start.position_m, with_course)) {
     no_course_until_ = query.now + kWithoutCourse;
     if (courses_) courses_->give_up();
   }
@@ -262,8 +264,7 @@ const DrivingCourse* MotionPlanner::follow_course(const Query& query, const Stat
                    course_goal_m(at_start.position_m, route_.remaining_waypoints_m(), route.end_m,
                                  CourseSearch::reach_m(limits.speed_mps)),
                    limits,
-                   {query.courses.nearby(at_start.position_m, kCourseHorizon_m, query.now), offers_,
-                    leaving_m_, staying_m_}};
+                   {with_course, offers_, leaving_m_, staying_m_}};
   return courses_->follow(*course_query_);
 }
 

@@ -97,9 +97,10 @@ class MotionPlanner {
   const DrivingCourse* follow_course(const Query& query, const State& at_start, const Route& route);
   /// Whether the robot can drive by a course: it relies on routes, and no body is near that nobody controls.
   bool may_follow_course(const Query& query, const State& at_start, const Route& route) const;
-  /// Finds the robots nearby that have no course, and whether they will drive away. Returns false if one of
-  /// them needs more room than courses leave.
-  bool find_robots_without_course(const Query& query, const Vec2& position_m);
+  /// Finds the robots nearby that are not among those with a course, and whether they will drive away.
+  /// Returns false if one of them needs more room than courses leave.
+  bool find_robots_without_course(const Query& query, const Vec2& position_m,
+                                  std::span<const DrivingCourse* const> with_course);
   /// The plan that follows the intent, or the course if there is one; nullopt if the laser has not seen the
   /// floor where the robot is.
   std::optional<MotionPlan> follow_intent(const Query& query, const Intent& intent, const State& at_start,

@@ -98,9 +98,9 @@ OtherRobot PassageYielding::other_nearby(const Version& version, Time now,
       goal = version.intent ? std::optional(version.intent->waypoint_m) : std::nullopt;
   other.returns = is_idle_ && !orders.has_drive_order;
   other.has_right_of_way =
-      is_idle_ ? orders.has_drive_order && !wants_place_of_this_robot(version, orders)
-               : orders.has_drive_order &&
-                     assignment.yields_to({version.robot, orders.number}, now, passage_period_);
+      orders.has_drive_order &&
+      (is_idle_ ? !wants_place_of_this_robot(version, orders)
+                : assignment.yields_to({version.robot, orders.number}, now, passage_period_));
   return other;
 }
 
