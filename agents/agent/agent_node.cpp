@@ -17,8 +17,6 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
-/// A course that is delayed by less is not published again.
-constexpr Duration kNoticeableDelay{10'000'000};
 /// A course is repeated after this time, in case that a message was lost.
 constexpr Duration kCoursePeriod{500'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
@@ -323,8 +321,7 @@ void AgentNode::publish_courses() {
   }
   const DrivingCourse* course = agent_.course();
   const std::optional<Time> plan = course ? std::optional(course->planned_at) : std::nullopt;
-  const bool is_new = plan != published_plan_ ||
-                      (course && std::chrono::abs(course->start - published_start_) >= kNoticeableDelay);
+  const bool is_new = plan != published_plan_ || (course && course->start != published_start_);
   // A robot that has arrived is known from its versions.
   const bool is_over = !course || course->end() < robot_now();
   if (!is_new && (is_over || !has_elapsed(kCoursePeriod, course_published_at_))) return;

@@ -51,13 +51,21 @@ bool CourseBook::is_far(const DrivingCourse& course, Time now) const {
   return place_m_ && !course.is_empty() && (course.position_at(now) - *place_m_).norm() > kFar_m;
 }
 
+std::vector<CourseBook::Heard>::iterator CourseBook::find(RobotId robot) {
+  return std::ranges::lower_bound(courses_, robot, {}, &Heard::robot);
+}
+
 void CourseBook::on_course(std::shared_ptr<const DrivingCourse> course, Time now) {
-  if (course->robot == self_ || (!courses_.contains(course->robot) && is_far(*course, now))) return;
-  if (!is_of_use(*course, now)) return;
-  Heard& heard = courses_[course->robot];
-  const bool is_late = heard.course && course->planned_at < heard.course->planned_at &&
-                       !is_older(heard.heard_at, kMaxSilence, now);
-  if (!is_late) heard = {std::move(course), now};
+  // Agents of a large fleet hear thousands of courses per second, most of them of robots far away.
+  if (course->robot == self_ || is_far(*course, now) || !is_of_use(*course, now)) return;
+  auto heard = find(course->robot);
+  const bool is_known = heard != courses_.end() && heard->robot == course->robot;
+  const bool is_late = is_known && course->planned_at < heard->course->planned_at &&
+                       !is_older(heard->heard_at, kMaxSilence, now);
+  if (is_late) return;
+  if (!is_known) heard = courses_.emplace(heard);
+  const Vec2 place_m = course->is_empty() ? Vec2(0, 0) : course->position_at(now);
+  *heard = {course->robot, now, place_m, std::move(course)};
 }
 
 void CourseBook::on_offer(std::shared_ptr<const CourseOffer> offer, Time now) {
@@ -75,19 +83,20 @@ void CourseBook::on_offer(std::shared_ptr<const CourseOffer> offer, Time now) {
 void CourseBook::forget_old(Time now) {
   if (std::chrono::abs(now - forgot_at_) < kForgetPeriod) return;
   forgot_at_ = now;
-  std::erase_if(courses_, [&](const auto& entry) {
-    return is_older(entry.second.heard_at, kMaxSilence, now) || is_far(*entry.second.course, now);
+  std::erase_if(courses_, [&](const Heard& heard) {
+    return is_older(heard.heard_at, kMaxSilence, now) || is_far(*heard.course, now);
   });
 }
 
 std::span<const DrivingCourse* const> CourseBook::nearby(const Vec2& centre_m, double horizon_m, Time now) {
   forget_old(now);
   nearby_.clear();
-  for (const auto& [robot, heard] : courses_) {
-    const DrivingCourse& course = *heard.course;
-    if (is_older(heard.heard_at, kMaxSilence, now)) continue;
-    if (!course.is_empty() && (course.position_at(now) - centre_m).norm() <= horizon_m)
-      nearby_.push_back(&course);
+  for (const Heard& heard : courses_) {
+    if (is_older(heard.heard_at, kMaxSilence, now) || heard.course->is_empty()) continue;
+    const double way_m = max_speed_mps_ * to_seconds(std::chrono::abs(now - heard.heard_at));
+    if ((heard.place_m - centre_m).squaredNorm() > (horizon_m + way_m) * (horizon_m + way_m)) continue;
+    if ((heard.course->position_at(now) - centre_m).norm() <= horizon_m)
+      nearby_.push_back(heard.course.get());
   }
   if (nearby_.size() <= kMaxNearby) return nearby_;
   const auto distance_m = [&](const DrivingCourse* course) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -41,25 +40,27 @@ class CourseBook {
 
  private:
   struct Heard {
-    std::shared_ptr<const DrivingCourse> course;
+    RobotId robot = 0;
     Time heard_at{};
+    Vec2 place_m{0, 0};  ///< where the robot was then
+    std::shared_ptr<const DrivingCourse> course;
   };
 
   /// Whether a robot can drive the course, and it is about the present.
   bool is_of_use(const DrivingCourse& course, Time now) const;
+  /// Whether the robot is far from this robot's place.
+  bool is_far(const DrivingCourse& course, Time now) const;
+  /// The place of the robot's course in courses_, or where it belongs.
+  std::vector<Heard>::iterator find(RobotId robot);
+  /// Forgets courses that are not repeated or are far, from time to time.
+  void forget_old(Time now);
 
   const RobotId self_;
   const Field field_;
   const double max_speed_mps_;
-  /// Whether the robot is far from the place.
-  bool is_far(const DrivingCourse& course, Time now) const;
-
-  /// Forgets courses that are not repeated or are far, from time to time.
-  void forget_old(Time now);
-
   std::optional<Vec2> place_m_;
   Time forgot_at_{};
-  std::map<RobotId, Heard> courses_;
+  std::vector<Heard> courses_;  // in the order of the robots' numbers
   std::vector<HeardOffer> offers_;
   std::vector<const DrivingCourse*> nearby_;
 };

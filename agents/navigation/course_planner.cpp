@@ -112,7 +112,8 @@ const DrivingCourse* CoursePlanner::follow(const Query& query) {
   target_m_ = query.target_m;
   conflict_.reset();
   brakes_ = false;
-  needs_course_ = true;
+  needs_course_ = query.goal_m.has_value();
+  if (!needs_course_) own_.reset();
   if (!own_ || query.start < own_->start) return nullptr;
   take_offer(query);
   delay_by_lag(query);
@@ -263,7 +264,7 @@ Vec2 CoursePlanner::acceleration_mps2(const Query& query, Duration hold) const {
 
 void CoursePlanner::plan(const Query& query, Rng& rng) {
   offers_ = {};
-  if (!due_) return;
+  if (!due_ || !query.goal_m) return;
   // A time in the future was recorded before the clock was set back.
   const double passed_s = to_seconds(std::chrono::abs(query.start - effort_at_));
   effort_ = std::min(kMaxEffort, effort_ + kEffort_perS * passed_s);
@@ -303,7 +304,7 @@ std::optional<DrivingCourse> CoursePlanner::find_course(const Query& query, std:
   }
   CourseTask task{robot_, query.at_start, query.target_m, query.limits, before};
   std::optional<DrivingCourse> course = search_.find_straight(task, obstruction);
-  if (!course && query.goal_m) {
+  if (!course) {
     task.goal_m = *query.goal_m;
     course = search_.find(task, obstruction, rng);
     if (course) course->continues = *query.goal_m != query.target_m;

@@ -35,8 +35,8 @@ class CoursePlanner {
     Time start{};         ///< when the robot's next motion starts
     State at_start;       ///< the robot's state at `start`
     Vec2 target_m{0, 0};  ///< where the robot wants to rest
-    /// The target, or a place on the way to it within CourseSearch::reach_m(); nullopt: the robot should only
-    /// look for the straight course to the target.
+    /// The target, or a place on the way to it within CourseSearch::reach_m(); nullopt: the robot drives
+    /// without a course.
     std::optional<Vec2> goal_m{};
     MotionLimits limits{};
     CourseSurroundings around{};

@@ -24,7 +24,7 @@ ShownRecording::ShownRecording(const std::string& scenario,
   simulate.insert(simulate.end(), simulate_arguments.begin(), simulate_arguments.end());
   group_.start({"simulate", simulate, false});
   bool is_recorded = false;
-  for (int i = 0; i < 12000 && !is_recorded; ++i) is_recorded = !group_.poll(20ms).empty();
+  for (int i = 0; i < 5000 && !is_recorded; ++i) is_recorded = !group_.poll(20ms).empty();
   REQUIRE(is_recorded);
   group_.start({"monitor", {program, "monitor", recording, "--port", "0"}, false});
   std::string line;

@@ -187,6 +187,16 @@ TEST_CASE("robots are nearby where their courses have led them by now") {
   CHECK(robots_nearby(book, kNow + 510ms) == std::vector<RobotId>{1});
 }
 
+TEST_CASE("courses of robots farther than eight metres away are ignored, and forgotten when they go there") {
+  CourseBook book(kSelf, kRules);
+  book.set_place({1, 0});
+  hear(book, resting(1, {8.9, 0}), kNow);
+  hear(book, resting(2, {9.1, 0}), kNow);
+  CHECK(robots_nearby(book, kNow, 50) == std::vector<RobotId>{1});
+  book.set_place({0, 0});
+  CHECK(robots_nearby(book, kNow + 300ms, 50).empty());
+}
+
 TEST_CASE("of many robots nearby, the forty nearest count, in the order of their numbers") {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
@@ -254,10 +264,27 @@ TEST_CASE("no more than 64 offers are kept at a time") {
   CHECK(book.offers(kNow + 300ms).size() == 1);
 }
 
+/// A course of two seconds from a random place in a random direction.
+DrivingCourse driving(RobotId robot, Rng& rng, Time planned_at) {
+  DrivingCourse course = resting(robot, random_vector(rng, 5), planned_at);
+  const Vec2 velocity_mps = random_vector(rng, 1.4);
+  State at = course.states.front();
+  at.velocity_mps = velocity_mps;
+  course.states.assign(1, at);
+  for (int sample = 0; sample < 40; ++sample) {
+    at.position_m += to_seconds(DrivingCourse::kSample) * velocity_mps;
+    course.states.push_back(at);
+  }
+  course.states.back().velocity_mps.setZero();
+  return course;
+}
+
 TEST_CASE("the book knows for each robot what a slow record of all messages knows") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Rng rng(seed);
     CourseBook book(kSelf, kRules);
+    const Vec2 place_m = random_vector(rng, 0.5);
+    book.set_place(place_m);
     struct Message {
       DrivingCourse course;
       Time at{};
@@ -268,18 +295,20 @@ TEST_CASE("the book knows for each robot what a slow record of all messages know
       CAPTURE(seed, step);
       now += from_seconds(rng.uniform(0, 0.2));
       const auto robot = static_cast<RobotId>(rng.below(6));
-      DrivingCourse course = resting(robot, random_vector(rng, 3), now - from_seconds(rng.uniform(0, 0.5)));
+      DrivingCourse course = driving(robot, rng, now - from_seconds(rng.uniform(0, 0.5)));
       if (rng.chance(0.2)) course.states.clear();
       hear(book, course, now);
       const auto known = latest.find(robot);
       const bool is_late = known != latest.end() && now - known->second.at <= 1500ms &&
                            course.planned_at < known->second.course.planned_at;
       if (!is_late) latest[robot] = {course, now};
+      const double horizon_m = rng.uniform(0, 7);
       std::map<RobotId, Time> expected, found;
       for (const auto& [other, message] : latest)
-        if (other != kSelf && !message.course.is_empty() && now - message.at <= 1500ms)
+        if (other != kSelf && !message.course.is_empty() && now - message.at <= 1500ms &&
+            (message.course.position_at(now) - place_m).norm() <= horizon_m)
           expected[other] = message.course.planned_at;
-      for (const DrivingCourse* nearby : book.nearby({0, 0}, 10, now))
+      for (const DrivingCourse* nearby : book.nearby(place_m, horizon_m, now))
         found[nearby->robot] = nearby->planned_at;
       REQUIRE(found == expected);
     }

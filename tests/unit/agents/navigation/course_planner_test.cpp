@@ -223,6 +223,33 @@ TEST_CASE("what is planned in a cycle is followed from the next cycle on") {
   CHECK(followed->planned_at == query.start);
 }
 
+TEST_CASE("a robot without a goal for its course gives its course up, searches for none, and stays due") {
+  FloorRules rules;
+  CoursePlanner planner(1, rules, ObstacleWorld());
+  Rng rng(1);
+  CoursePlanner::Query query;
+  query.start = kStart;
+  query.at_start.position_m = {-2, 0};
+  query.target_m = {2, 0};
+  query.goal_m = query.target_m;
+  planner.follow(query);
+  planner.plan(query, rng);
+  REQUIRE(planner.course());
+  const Time due = planner.course()->due;
+  query.goal_m.reset();
+  query.start += kCycle;
+  CHECK_FALSE(planner.follow(query));
+  CHECK_FALSE(planner.course());
+  planner.plan(query, rng);
+  CHECK_FALSE(planner.course());
+  query.goal_m = query.target_m;
+  query.start += kCycle;
+  planner.follow(query);
+  planner.plan(query, rng);
+  REQUIRE(planner.course());
+  CHECK(planner.course()->due == due);
+}
+
 //  start    o    ...    target     The course around a robot ends three metres ahead, and is continued.
 TEST_CASE("on a large floor, a robot continues its course until it arrives") {
   CourseCrowd crowd({40, 8});
