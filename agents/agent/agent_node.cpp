@@ -109,9 +109,11 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
   const auto result = agent_.on_verdict(*verdict, robot_now());
   if (result.round_trip) negotiation_durations_.add(*result.round_trip);
   if (result.round_trip && verdict->granted_version == 0) event_logger_.on_denial(*verdict);
-  if (!result.command) return;
-  commanded_ = true;
-  publish_command(*result.command);
+  if (result.command) {
+    commanded_ = true;
+    publish_command(*result.command);
+  }
+  if (are_courses_due_) plan_courses();
 }
 
 void AgentNode::on_world_state(const msg::WorldState& message) {
@@ -293,23 +295,27 @@ void AgentNode::negotiate_if_time() {
 }
 
 void AgentNode::negotiate(Time start) {
+  are_courses_due_ = false;
   if (!agent_.may_propose(robot_now()) || !update_clocks()) return;
   if (const auto rest = agent_.propose_rest_version(robot_now(), start)) return publish_proposal(*rest);
   const double max_speed_mps = clocks_.max_speed_mps(bus_.now());
   const Duration max_lag = clocks_.max_lag(bus_.now());
   std::optional<MotionPlan> plan;
-  Duration planning = duration_of([&] { plan = agent_.plan(robot_now(), start, max_speed_mps, max_lag); });
-  if (!plan) {
-    plan_durations_.add(planning);
-    return publish_courses();
-  }
+  planning_ = duration_of([&] { plan = agent_.plan(robot_now(), start, max_speed_mps, max_lag); });
+  if (!plan) return plan_courses();
   // More measurements narrow the offset's interval, which allows the robot to drive faster.
   if (max_speed_mps < max_speed_mps_) measure_coordinator_clock(kBetweenMeasurements);
   std::optional<Proposal> proposal;
   search_durations_.add(duration_of([&] { proposal = agent_.search(*plan, robot_now()); }));
-  if (proposal) publish_proposal(*proposal);
-  planning += duration_of([&] { agent_.plan_courses(); });
-  plan_durations_.add(planning);
+  if (!proposal) return plan_courses();
+  publish_proposal(*proposal);
+  are_courses_due_ = true;
+}
+
+void AgentNode::plan_courses() {
+  are_courses_due_ = false;
+  planning_ += duration_of([&] { agent_.plan_courses(); });
+  plan_durations_.add(planning_);
   publish_courses();
 }
 

@@ -91,6 +91,8 @@ class AgentNode {
   void publish(const Registration& registration);
   void publish_proposal(const Proposal& proposal);
   void publish_status();
+  /// Plans the robot's course and courses for others, and publishes them. Takes milliseconds.
+  void plan_courses();
   /// Publishes the robot's course if it has changed or was not published for a while, and new offers.
   void publish_courses();
 
@@ -108,9 +110,11 @@ class AgentNode {
   DropCounters drops_;                     // messages that could not be decoded
   EventReporter events_;
   AgentEventLogger event_logger_;
-  Time next_cycle_;            // by the robot's clock, like all times that are passed to the agent
-  bool commanded_ = false;     // a command has been published in this cycle
-  int registration_wait_ = 0;  // number of cycles until the next registration
+  Time next_cycle_;               // by the robot's clock, like all times that are passed to the agent
+  bool commanded_ = false;        // a command has been published in this cycle
+  bool are_courses_due_ = false;  // once the verdict of the proposal has arrived
+  Duration planning_{};           // time that planning has taken in this cycle
+  int registration_wait_ = 0;     // number of cycles until the next registration
   /// The course that was published last: when it was planned, its start, and when it was published.
   std::optional<Time> published_plan_{Time{}};  // an agent says first that it has none, or which
   Time published_start_{}, course_published_at_{};

@@ -70,14 +70,14 @@ void CourseBook::on_course(std::shared_ptr<const DrivingCourse> course, Time now
 
 void CourseBook::on_offer(std::shared_ptr<const CourseOffer> offer, Time now) {
   if (offer->by == self_ || !is_of_use(offer->course, now)) return;
-  std::erase_if(offers_, [&](const HeardOffer& heard) {
+  std::erase_if(heard_offers_, [&](const HeardOffer& heard) {
     return is_older(heard.heard_at, kOfferAge, now) ||
            (heard.offer->by == offer->by && heard.offer->course.robot == offer->course.robot);
   });
   const auto of_robot =
-      std::ranges::count(offers_, offer->by, [](const HeardOffer& heard) { return heard.offer->by; });
-  if (offers_.size() < kMaxOffers && static_cast<std::size_t>(of_robot) < kMaxOffersOfRobot)
-    offers_.push_back({std::move(offer), now});
+      std::ranges::count(heard_offers_, offer->by, [](const HeardOffer& heard) { return heard.offer->by; });
+  if (heard_offers_.size() < kMaxOffers && static_cast<std::size_t>(of_robot) < kMaxOffersOfRobot)
+    heard_offers_.push_back({std::move(offer), now});
 }
 
 void CourseBook::forget_old(Time now) {
@@ -95,22 +95,29 @@ std::span<const DrivingCourse* const> CourseBook::nearby(const Vec2& centre_m, d
     if (is_older(heard.heard_at, kMaxSilence, now) || heard.course->is_empty()) continue;
     const double way_m = max_speed_mps_ * to_seconds(std::chrono::abs(now - heard.heard_at));
     if ((heard.place_m - centre_m).squaredNorm() > (horizon_m + way_m) * (horizon_m + way_m)) continue;
-    if ((heard.course->position_at(now) - centre_m).norm() <= horizon_m)
-      nearby_.push_back(heard.course.get());
+    if ((heard.course->position_at(now) - centre_m).norm() <= horizon_m) nearby_.push_back(heard.course);
   }
-  if (nearby_.size() <= kMaxNearby) return nearby_;
-  const auto distance_m = [&](const DrivingCourse* course) {
-    return (course->position_at(now) - centre_m).norm();
-  };
-  std::ranges::nth_element(nearby_, nearby_.begin() + kMaxNearby, {}, distance_m);
-  nearby_.resize(kMaxNearby);
-  std::ranges::sort(nearby_, {}, &DrivingCourse::robot);
-  return nearby_;
+  if (nearby_.size() > kMaxNearby) {
+    const auto distance_m = [&](const auto& course) { return (course->position_at(now) - centre_m).norm(); };
+    std::ranges::nth_element(nearby_, nearby_.begin() + kMaxNearby, {}, distance_m);
+    nearby_.resize(kMaxNearby);
+    std::ranges::sort(nearby_, {}, [](const auto& course) { return course->robot; });
+  }
+  nearby_pointers_.clear();
+  for (const auto& course : nearby_) nearby_pointers_.push_back(course.get());
+  return nearby_pointers_;
 }
 
-std::span<const HeardOffer> CourseBook::offers(Time now) {
-  std::erase_if(offers_, [&](const HeardOffer& heard) { return is_older(heard.heard_at, kOfferAge, now); });
-  return offers_;
+std::span<const CourseOffer* const> CourseBook::offers(Time now) {
+  std::erase_if(heard_offers_,
+                [&](const HeardOffer& heard) { return is_older(heard.heard_at, kOfferAge, now); });
+  offers_.clear();
+  offer_pointers_.clear();
+  for (const HeardOffer& heard : heard_offers_) {
+    offers_.push_back(heard.offer);
+    offer_pointers_.push_back(heard.offer.get());
+  }
+  return offer_pointers_;
 }
 
 }  // namespace sidestep

@@ -11,12 +11,6 @@
 
 namespace sidestep {
 
-/// An offer, and when it was heard.
-struct HeardOffer {
-  std::shared_ptr<const CourseOffer> offer;
-  Time heard_at{};
-};
-
 /// The courses that the agents of other robots have published, and the offers of new courses. Inputs: the
 /// decoded messages. Courses that are not repeated are forgotten, because their agents may have ended.
 class CourseBook {
@@ -33,10 +27,10 @@ class CourseBook {
   void on_offer(std::shared_ptr<const CourseOffer> offer, Time now);
 
   /// The courses of robots that are now within `horizon_m`, in the order of their numbers. Valid until the
-  /// next call.
+  /// next call, whatever is heard meanwhile.
   std::span<const DrivingCourse* const> nearby(const Vec2& centre_m, double horizon_m, Time now);
-  /// The offers that are recent enough to be taken. Valid until the next call.
-  std::span<const HeardOffer> offers(Time now);
+  /// The offers that are recent enough to be taken. Valid until the next call, whatever is heard meanwhile.
+  std::span<const CourseOffer* const> offers(Time now);
 
  private:
   struct Heard {
@@ -44,6 +38,10 @@ class CourseBook {
     Time heard_at{};
     Vec2 place_m{0, 0};  ///< where the robot was then
     std::shared_ptr<const DrivingCourse> course;
+  };
+  struct HeardOffer {
+    std::shared_ptr<const CourseOffer> offer;
+    Time heard_at{};
   };
 
   /// Whether a robot can drive the course, and it is about the present.
@@ -61,8 +59,12 @@ class CourseBook {
   std::optional<Vec2> place_m_;
   Time forgot_at_{};
   std::vector<Heard> courses_;  // in the order of the robots' numbers
-  std::vector<HeardOffer> offers_;
-  std::vector<const DrivingCourse*> nearby_;
+  std::vector<HeardOffer> heard_offers_;
+  // What the last calls of nearby() and offers() have returned, and its owners.
+  std::vector<std::shared_ptr<const DrivingCourse>> nearby_;
+  std::vector<std::shared_ptr<const CourseOffer>> offers_;
+  std::vector<const DrivingCourse*> nearby_pointers_;
+  std::vector<const CourseOffer*> offer_pointers_;
 };
 
 }  // namespace sidestep

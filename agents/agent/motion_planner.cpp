@@ -254,8 +254,6 @@ const DrivingCourse* MotionPlanner::follow_course(const Query& query, const Stat
   }
   if (query.now < no_course_until_) return nullptr;
   if (!courses_) courses_.emplace(robot_, rules_, route_.obstacles().fixed_world());
-  offers_.clear();
-  for (const HeardOffer& heard : query.courses.offers(query.now)) offers_.push_back(heard.offer.get());
   MotionLimits limits = rules_.limits;
   limits.speed_mps = std::min(limits.speed_mps, max_speed_mps(query, at_start));
   course_query_ = {query.start,
@@ -264,7 +262,7 @@ const DrivingCourse* MotionPlanner::follow_course(const Query& query, const Stat
                    course_goal_m(at_start.position_m, route_.remaining_waypoints_m(), route.end_m,
                                  CourseSearch::reach_m(limits.speed_mps)),
                    limits,
-                   {with_course, offers_, leaving_m_, staying_m_}};
+                   {with_course, query.courses.offers(query.now), leaving_m_, staying_m_}};
   return courses_->follow(*course_query_);
 }
 

@@ -124,7 +124,6 @@ class MotionPlanner {
   const RobotId robot_;
   std::optional<CoursePlanner> courses_;              // made when it is first used
   std::optional<CoursePlanner::Query> course_query_;  // of this cycle
-  std::vector<const CourseOffer*> offers_;
   std::vector<Vec2> leaving_m_, staying_m_;
   /// A robot that rests without a course, and since when.
   struct Resting {

@@ -163,4 +163,24 @@ TEST_CASE("the courses that robots follow reach the agents of all other robots")
   }
 }
 
+TEST_CASE("agents plan courses after the verdict, so that neither their proposals nor their robots wait") {
+  IdealFloor floor(circle_of_five(), 1);
+  SimBus observer(floor.network);
+  observer.become_observer();
+  std::map<RobotId, bool> waits_for_verdict;
+  observer.subscribe(topics::kProposal, [&](const msg::Proposal& m) { waits_for_verdict[m.robot()] = true; });
+  for (const RobotSpec& robot : floor.scenario.robots)
+    observer.subscribe(topics::kVerdict, robot.id,
+                       [&](const msg::Verdict& m) { waits_for_verdict[m.robot()] = false; });
+  int courses = 0;
+  observer.subscribe(topics::kCourse, [&](const msg::Course& m) {
+    CAPTURE(m.robot());
+    CHECK_FALSE(waits_for_verdict[m.robot()]);
+    ++courses;
+  });
+  REQUIRE(floor.run_until_speed(0.5));
+  (void)floor.run(2);
+  CHECK(courses > 10);
+}
+
 }  // namespace sidestep::course_relay_test

@@ -14,6 +14,7 @@
 #include "deploy/audit/picture/run_picture.hpp"
 #include "tests/bench/crowds/crowd_families.hpp"
 #include "tests/bench/crowds/crowd_reference.hpp"
+#include "tests/bench/crowds/crowd_scene_file.hpp"
 #include "tests/bench/crowds/crowd_table.hpp"
 #include "tests/bench/crowds/crowd_trial.hpp"
 #include "tests/bench/crowds/reciprocal_trial.hpp"
@@ -54,12 +55,15 @@ std::string path_in(const CrowdBenchOptions& options, const std::string& file) {
   return (std::filesystem::path(options.folder) / file).string();
 }
 
-/// Sidestep; draws the first seed if there is a folder.
+/// Sidestep; draws the first seed, and writes its scene, if there is a folder.
 CrowdMethod sidestep_method(const CrowdBenchOptions& options) {
   return {kSidestepMethod, "", [options](const Scenario& scenario, std::uint64_t seed) {
             const Report report = drive_crowd(scenario, seed);
-            if (!options.folder.empty() && seed == options.seeds.front())
+            if (!options.folder.empty() && seed == options.seeds.front()) {
               write_file(path_in(options, scenario.name + ".svg"), run_picture_from(to_json(report)));
+              if (const auto file = crowd_scene_file(scenario))
+                write_file(path_in(options, scenario.name + ".yaml"), *file);
+            }
             return crowd_result_of(report);
           }};
 }

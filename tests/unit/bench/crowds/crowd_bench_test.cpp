@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "common/config/scenario_loader.hpp"
 #include "common/file/read_file.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "tests/bench/crowds/crowd_families.hpp"
@@ -59,6 +60,7 @@ TEST_CASE("the benchmark of crowds writes its tables, its plots and a picture of
         std::string::npos);
   CHECK(std::filesystem::file_size(folder.file("crowds.png")) > 1000);
   CHECK(std::filesystem::file_size(folder.file("crossing-streams.svg")) > 1000);
+  CHECK(load_scenario(folder.file("crossing-streams.yaml")).robots.size() == 10);
 }
 
 TEST_CASE("the benchmark of crowds rejects unknown names and missing seeds before it begins") {
