@@ -8,8 +8,6 @@
 namespace sidestep {
 namespace {
 
-/// Courses are repeated more often than this.
-constexpr Duration kMaxSilence{1'500'000'000};
 /// Offers are taken soon or never.
 constexpr Duration kOfferAge{200'000'000};
 constexpr std::size_t kMaxNearby = 40;  ///< number of nearest courses that are considered
@@ -61,7 +59,7 @@ void CourseBook::on_course(std::shared_ptr<const DrivingCourse> course, Time now
   auto heard = find(course->robot);
   const bool is_known = heard != courses_.end() && heard->robot == course->robot;
   const bool is_late = is_known && course->planned_at < heard->course->planned_at &&
-                       !is_older(heard->heard_at, kMaxSilence, now);
+                       !is_older(heard->heard_at, DrivingCourse::kMaxSilence, now);
   if (is_late) return;
   if (!is_known) heard = courses_.emplace(heard);
   const Vec2 place_m = course->is_empty() ? Vec2(0, 0) : course->position_at(now);
@@ -84,7 +82,7 @@ void CourseBook::forget_old(Time now) {
   if (std::chrono::abs(now - forgot_at_) < kForgetPeriod) return;
   forgot_at_ = now;
   std::erase_if(courses_, [&](const Heard& heard) {
-    return is_older(heard.heard_at, kMaxSilence, now) || is_far(*heard.course, now);
+    return is_older(heard.heard_at, DrivingCourse::kMaxSilence, now) || is_far(*heard.course, now);
   });
 }
 
@@ -92,7 +90,7 @@ std::span<const DrivingCourse* const> CourseBook::nearby(const Vec2& centre_m, d
   forget_old(now);
   nearby_.clear();
   for (const Heard& heard : courses_) {
-    if (is_older(heard.heard_at, kMaxSilence, now) || heard.course->is_empty()) continue;
+    if (is_older(heard.heard_at, DrivingCourse::kMaxSilence, now) || heard.course->is_empty()) continue;
     const double way_m = max_speed_mps_ * to_seconds(std::chrono::abs(now - heard.heard_at));
     if ((heard.place_m - centre_m).squaredNorm() > (horizon_m + way_m) * (horizon_m + way_m)) continue;
     if ((heard.course->position_at(now) - centre_m).norm() <= horizon_m) nearby_.push_back(heard.course);

@@ -15,6 +15,9 @@ namespace sidestep {
 struct DrivingCourse {
   static constexpr Duration kSample{50'000'000};
   static constexpr std::size_t kMaxStates = 512;
+  /// Courses are repeated more often than this. A course that is not repeated is forgotten, because its agent
+  /// may have ended.
+  static constexpr Duration kMaxSilence{1'500'000'000};
 
   RobotId robot = 0;
   Time planned_at{};  ///< identifies the course among those of its robot

@@ -2,7 +2,9 @@
 #include "deploy/inspect/floor/floor_state.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "common/messaging/course_codec.hpp"
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/protocol/senders.hpp"
@@ -22,6 +24,11 @@ const msg::Version* find_candidate(const msg::Proposal& proposal, VersionNumber 
 }
 
 }  // namespace
+
+const DrivingCourse* present_course(const RobotView& robot, Time now) {
+  const DrivingCourse* course = fresh(robot.course, now, DrivingCourse::kMaxSilence);
+  return course && !course->is_empty() && course->end() > now ? course : nullptr;
+}
 
 RobotView* FloorState::robot(std::uint32_t id) { return id < kMaxRobots ? &robots_[id] : nullptr; }
 
@@ -93,6 +100,16 @@ void FloorState::on(const msg::OrderMemory& memory, Time now) {
 
 void FloorState::on(const msg::LaserScan& scan, Time now) {
   if (RobotView* view = robot(scan.robot())) view->scan = {scan, now};
+}
+
+void FloorState::on(const msg::Course& message, Time now) {
+  if (!is_coordinator(message.header().sender())) return;
+  std::optional<DrivingCourse> course = decode(message, now);
+  RobotView* view = course ? robot(course->robot) : nullptr;
+  if (view == nullptr) return;
+  const DrivingCourse* known = fresh(view->course, now, DrivingCourse::kMaxSilence);
+  const bool is_late = known && course->planned_at < known->planned_at;
+  if (!is_late) view->course = {*std::move(course), now};
 }
 
 }  // namespace sidestep

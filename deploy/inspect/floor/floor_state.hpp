@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "common/messaging/topics.hpp"
+#include "common/motion/driving_course.hpp"
 #include "common/motion/version.hpp"
 #include "common/protocol/order_book.hpp"
 #include "common/time/time.hpp"
+#include "idl/course.hpp"
 #include "idl/laser.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
@@ -32,8 +34,9 @@ inline constexpr Duration kMaxShownAge = std::chrono::seconds(1);
 
 /// The value, if it is recent enough to be shown; otherwise nullptr.
 template <typename Value>
-const Value* fresh(const std::optional<Received<Value>>& received, Time now) {
-  return received && now - received->at <= kMaxShownAge ? &received->value : nullptr;
+const Value* fresh(const std::optional<Received<Value>>& received, Time now,
+                   Duration max_age = kMaxShownAge) {
+  return received && now - received->at <= max_age ? &received->value : nullptr;
 }
 
 /// A message of any topic.
@@ -62,8 +65,13 @@ struct RobotView {
   std::optional<Received<msg::Version>> granted;
   std::optional<Received<Denial>> denial;  ///< last denial since the last grant
   std::optional<Received<msg::LaserScan>> scan;
+  std::optional<Received<DrivingCourse>> course;   ///< an empty one: the robot has none
   std::map<std::uint32_t, std::uint64_t> denials;  ///< denials of first candidates, by msg::Reason
 };
+
+/// The course that the robot has now; nullptr if it has none, or if the course is over or has not been
+/// repeated.
+const DrivingCourse* present_course(const RobotView& robot, Time now);
 
 /// The newest state of the floor according to messages. Values in messages are not trusted: robots and
 /// coordinators with numbers beyond those that the protocol allows are ignored.
@@ -82,6 +90,8 @@ class FloorState {
   void on(const msg::CoordinatorState& state, Time now);
   void on(const msg::OrderMemory& memory, Time now);
   void on(const msg::LaserScan& scan, Time now);
+  /// Ignores courses that no coordinator has relayed, because other robots do not know them.
+  void on(const msg::Course& course, Time now);
 
   const std::map<RobotId, RobotView>& robots() const { return robots_; }
   const std::optional<Received<msg::WorldState>>& world() const { return world_; }

@@ -22,7 +22,7 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array kRobotColumns{
     "id",           "flags",  "state",  "true_x",  "true_y", "true_heading", "seen_x",         "seen_y",
     "seen_heading", "x",      "y",      "heading", "vx",     "vy",           "tracking_error", "denied",
-    "blocker",      "goal_x", "goal_y", "via_x",   "via_y",  "nearest_x",    "nearest_y"};
+    "blocker",      "goal_x", "goal_y", "via_x",   "via_y",  "nearest_x",    "nearest_y",      "waits_for"};
 constexpr std::array kVersionColumns{
     "start",     "x",   "y",   "vx",        "vy",  "inflation", "phases",    "duration0", "ax0", "ay0",
     "duration1", "ax1", "ay1", "duration2", "ax2", "ay2",       "duration3", "ax3",       "ay3"};
@@ -32,8 +32,12 @@ constexpr std::array kObstacleColumns{"id", "x", "y", "vx", "vy", "radius", "age
 constexpr std::array kBallColumns{"x", "y", "vx", "vy"};
 constexpr std::array kDetectionColumns{"camera", "kind", "x", "y", "heading", "radius"};
 constexpr std::array kBeamColumns{"robot", "x", "y"};
+/// The states of a course, from now on. A cubic through two successive states differs from the course by at
+/// most about a centimetre.
+constexpr std::array kCourseColumns{"robot", "ahead", "x", "y", "vx", "vy"};
+constexpr Duration kCourseStep = std::chrono::milliseconds(500);
 constexpr std::array kFlags{"off_reference", "lifted", "held", "blocked"};
-constexpr std::array kSections{"robots", "ledger", "obstacles", "balls", "detections", "beams"};
+constexpr std::array kSections{"robots", "ledger", "obstacles", "balls", "detections", "beams", "courses"};
 static_assert(kVersionColumns.size() == 7 + 3 * msg::MAX_PHASES);
 
 /// One section of a frame.
@@ -76,7 +80,7 @@ void add_version(Rows& rows, const msg::Version* version, Time now) {
   }
 }
 
-void add_robot(Rows& rows, RobotId id, const RobotView& robot, Time now) {
+void add_robot(Rows& rows, RobotId id, const RobotView& robot, const Waits& waits, Time now) {
   const msg::TrueRobotState* truth = fresh(robot.truth, now);
   const msg::TrackedRobot* seen = fresh(robot.seen, now);
   const msg::Feedback* feedback = fresh(robot.feedback, now);
@@ -111,9 +115,20 @@ void add_robot(Rows& rows, RobotId id, const RobotView& robot, Time now) {
     rows.unknown(4);
   }
   is_blocked ? rows.add(order->nearest_x_m()).add(order->nearest_y_m()) : rows.unknown(2);
+  const auto wait = waits.find(id);
+  rows.add(wait == waits.end() ? kUnknown : static_cast<double>(wait->second));
   add_version(rows, feedback ? &feedback->executing() : nullptr, now);
   add_version(rows, granted, now);
   add_version(rows, proposed, now);
+}
+
+void add_course(Rows& rows, const DrivingCourse& course, Time now) {
+  for (Time t = now;; t = std::min(t + kCourseStep, course.end())) {
+    const State state = course.state_at(std::max(t, course.start));
+    rows.add(course.robot).add(to_seconds(t - now)).add(state.position_m.x()).add(state.position_m.y());
+    rows.add(state.velocity_mps.x()).add(state.velocity_mps.y());
+    if (t >= course.end()) return;
+  }
 }
 
 void add_beams(Rows& rows, const msg::LaserScan& scan) {
@@ -167,13 +182,14 @@ void append(std::string& bytes, const Value& value) {
 
 }  // namespace
 
-std::string encode_frame(const FloorState& floor, Time now) {
+std::string encode_frame(const FloorState& floor, const Waits& waits, Time now) {
   Rows robots(kRobotRow);
   Rows ledger(kLedgerColumns.size() + kVersionColumns.size());
   Rows obstacles(kObstacleColumns.size()), balls(kBallColumns.size());
-  Rows detections(kDetectionColumns.size()), beams(kBeamColumns.size());
+  Rows detections(kDetectionColumns.size()), beams(kBeamColumns.size()), courses(kCourseColumns.size());
   for (const auto& [id, robot] : floor.robots()) {
-    add_robot(robots, id, robot, now);
+    add_robot(robots, id, robot, waits, now);
+    if (const DrivingCourse* course = present_course(robot, now)) add_course(courses, *course, now);
     if (const msg::LaserScan* scan = fresh(robot.scan, now)) add_beams(beams, *scan);
   }
   for (const auto& [index, page] : floor.ledger()) {
@@ -197,8 +213,8 @@ std::string encode_frame(const FloorState& floor, Time now) {
   for (const auto& [camera, frame] : floor.detections())
     if (now - frame.at <= kMaxShownAge) add_detections(detections, frame.value);
 
-  const std::array<const Rows*, kSections.size()> sections{&robots, &ledger,     &obstacles,
-                                                           &balls,  &detections, &beams};
+  const std::array<const Rows*, kSections.size()> sections{&robots,     &ledger, &obstacles, &balls,
+                                                           &detections, &beams,  &courses};
   std::string bytes;
   append(bytes, unix_seconds(now));
   append(bytes, static_cast<std::uint32_t>(sections.size()));
@@ -239,7 +255,8 @@ nlohmann::ordered_json frame_layout() {
                                                     names(kObstacleColumns),
                                                     names(kBallColumns),
                                                     names(kDetectionColumns),
-                                                    names(kBeamColumns)};
+                                                    names(kBeamColumns),
+                                                    names(kCourseColumns)};
   nlohmann::ordered_json sections = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < kSections.size(); ++i)
     sections.push_back({{"name", kSections[i]}, {"columns", columns[i]}});

@@ -10,6 +10,7 @@
 #include "common/time/time.hpp"
 #include "deploy/inspect/floor/floor_state.hpp"
 #include "deploy/view/monitor/closest_pair.hpp"
+#include "deploy/view/monitor/waits.hpp"
 
 namespace sidestep {
 
@@ -23,7 +24,7 @@ namespace sidestep {
 /// | 4 × … | the rows of each section |
 ///
 /// frame_layout() names the sections and the columns of their rows. Unknown values are NaN.
-[[nodiscard]] std::string encode_frame(const FloorState& floor, Time now);
+[[nodiscard]] std::string encode_frame(const FloorState& floor, const Waits& waits, Time now);
 
 /// The robots of a frame whose positions are known: from ground truth, else from vision, else from the
 /// robots' own estimates.

@@ -59,27 +59,25 @@ std::optional<double> number_in(const Json& json, const char* key) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// Seconds since 1970 as a time; nullopt if they are out of range.
-std::optional<Time> time_at(double at_s) {
-  if (!(std::abs(at_s) <= 9e9)) return std::nullopt;
-  return time_from_ns(std::llround(at_s * 1e9));
-}
-
 /// The member `at_s` as a time; nullopt if it is missing or out of range.
 std::optional<Time> time_in(const Json& json) {
   const std::optional<double> at_s = number_in(json, "at_s");
   return at_s ? time_at(*at_s) : std::nullopt;
 }
 
+/// nullopt if the text is no number.
+template <typename Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number number{};
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+  return end.ec == std::errc() && end.ptr == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
 /// The query's `at_s` as a time; nullopt if it is missing, no number, or out of range.
 std::optional<Time> time_in(const std::map<std::string, std::string>& query) {
   const auto given = query.find("at_s");
-  if (given == query.end()) return std::nullopt;
-  const std::string& text = given->second;
-  double at_s = 0;
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), at_s);
-  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
-  return time_at(at_s);
+  const auto at_s = given == query.end() ? std::nullopt : parsed<double>(given->second);
+  return at_s ? time_at(*at_s) : std::nullopt;
 }
 
 }  // namespace
@@ -87,6 +85,7 @@ std::optional<Time> time_in(const std::map<std::string, std::string>& query) {
 Monitor::Monitor(Bus& bus, const MonitorSettings& settings)
     : bus_(bus),
       settings_(settings),
+      rules_(floor_rules(settings.scenario ? *settings.scenario : Scenario())),
       history_(kHistoryBytes,
                settings.is_recording ? History::WhenFull::kThinOut : History::WhenFull::kForgetOldest),
       progress_(settings.is_recording ? 0 : 1) {
@@ -159,7 +158,7 @@ Json Monitor::panels() {
   const bool is_heard = now - heard_at_ <= std::chrono::seconds(1);
   Json json{{"type", "panels"}, {"at_s", unix_seconds(now)}};
   json["promise"] = promise_json(assessment_.get(), is_heard, closest_pair_, smallest_);
-  json["robots"] = robots_json(floor_, now);
+  json["robots"] = robots_json(floor_, waits(), now);
   json["coordinators"] = coordinators_json(floor_, now);
   json["epochs"] = epochs_json(assessment_.get());
   json["zones"] = zones_json(floor_);
@@ -178,8 +177,8 @@ void Monitor::update_panels() {
                         {"promise", json["promise"]}});
 }
 
-double Monitor::radius_m() const {
-  return settings_.scenario ? settings_.scenario->radius_m : Scenario().radius_m;
+Snapshot Monitor::snapshot_at(Time at) const {
+  return {at, std::make_shared<const std::string>(encode_frame(floor_, waits(), at)), latest_panels_};
 }
 
 void Monitor::take_snapshot() {
@@ -198,14 +197,14 @@ void Monitor::take_snapshot() {
   }
   // A recording opens at the first grant, so its panels must not be those of an earlier moment.
   if (is_due || is_first_grant) update_panels();
-  history_.add({now, std::make_shared<const std::string>(encode_frame(floor_, now)), latest_panels_});
+  history_.add(snapshot_at(now));
 }
 
 void Monitor::take_last_snapshot() {
   update_panels();
   // The history would ignore a second snapshot of the same moment.
   const Time now = history_.empty() ? bus_.now() : std::max(bus_.now(), history_.last().at + Duration{1});
-  history_.add_last({now, std::make_shared<const std::string>(encode_frame(floor_, now)), latest_panels_});
+  history_.add_last(snapshot_at(now));
 }
 
 void Monitor::end() {
@@ -382,17 +381,14 @@ std::optional<WebResponse> Monitor::respond(const WebRequest& request) {
                        text_of({{"error", "at_s: expected seconds since 1970, e.g. ?at_s=1795630117.8"}})};
   }
   if (request.path == "/api/events") {
-    std::uint64_t since = 0;
     const auto given = request.query.find("since");
-    if (given != request.query.end()) {
-      const std::string& text = given->second;
-      const auto end = std::from_chars(text.data(), text.data() + text.size(), since);
-      if (end.ec != std::errc() || end.ptr != text.data() + text.size())
-        return WebResponse{400, "application/json",
-                           text_of({{"error", "since: expected a number, got '" + text + "'"}})};
-    }
+    const std::string text = given == request.query.end() ? "0" : given->second;
+    const auto since = parsed<std::uint64_t>(text);
+    if (!since)
+      return WebResponse{400, "application/json",
+                         text_of({{"error", "since: expected a number, got '" + text + "'"}})};
     Json log = Json::array();
-    for (const MonitorEvent& event : events_.since(since)) log.push_back(to_json(event));
+    for (const MonitorEvent& event : events_.since(*since)) log.push_back(to_json(event));
     return WebResponse{200, "application/json", text_of(log)};
   }
   return std::nullopt;

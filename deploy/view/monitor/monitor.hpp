@@ -19,6 +19,7 @@
 #include "deploy/view/monitor/run_assessment.hpp"
 #include "deploy/view/monitor/topic_traffic.hpp"
 #include "deploy/view/monitor/viewer_time.hpp"
+#include "deploy/view/monitor/waits.hpp"
 #include "deploy/view/server/web_server.hpp"
 
 namespace sidestep {
@@ -70,7 +71,7 @@ class Monitor {
   void on_any_message(std::function<void(const AnyMessage&)> callback) {
     on_any_message_ = std::move(callback);
   }
-  double radius_m() const;
+  double radius_m() const { return rules_.radius_m; }
   /// The time of the run.
   Time now() const { return ended_at_ ? *ended_at_ : bus_.now(); }
 
@@ -109,6 +110,8 @@ class Monitor {
   void open_recording(Viewer& viewer) const;
   nlohmann::ordered_json panels();
   nlohmann::ordered_json scene() const;
+  Waits waits() const { return waits_on(floor_, rules_, bus_.now()); }
+  Snapshot snapshot_at(Time at) const;
   void send_time(WebSocket& socket, Viewer& viewer);
   void send_inspections();
   /// Forgets inspections that nobody is watching.
@@ -117,6 +120,7 @@ class Monitor {
 
   Bus& bus_;
   MonitorSettings settings_;
+  const FloorRules rules_;  ///< those of the scenario, or defaults
   FloorState floor_;
   EventLog events_;
   EventWatch event_watch_{events_};

@@ -5,6 +5,7 @@
 #include <array>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/histogram_codec.hpp"
@@ -142,9 +143,13 @@ Json promise_json(const RunAssessment* assessment, bool is_heard, const std::opt
   return promise;
 }
 
-Json robots_json(const FloorState& floor, Time now) {
+Json robots_json(const FloorState& floor, const Waits& waits, Time now) {
   Json rows = Json::array();
-  for (const auto& [id, robot] : floor.robots()) rows.push_back(robot_json(id, robot, floor.orders(), now));
+  for (const auto& [id, robot] : floor.robots()) {
+    Json row = robot_json(id, robot, floor.orders(), now);
+    if (const auto wait = waits.find(id); wait != waits.end()) row["waits_for"] = wait->second;
+    rows.push_back(std::move(row));
+  }
   return rows;
 }
 

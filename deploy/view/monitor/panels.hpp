@@ -7,6 +7,7 @@
 #include "deploy/inspect/floor/floor_state.hpp"
 #include "deploy/view/monitor/closest_pair.hpp"
 #include "deploy/view/monitor/run_assessment.hpp"
+#include "deploy/view/monitor/waits.hpp"
 
 namespace sidestep {
 
@@ -18,7 +19,7 @@ namespace sidestep {
                                                   const std::optional<ClosestPair>& smallest);
 
 /// One row per robot: its agent's activity and performance.
-[[nodiscard]] nlohmann::ordered_json robots_json(const FloorState& floor, Time now);
+[[nodiscard]] nlohmann::ordered_json robots_json(const FloorState& floor, const Waits& waits, Time now);
 /// One row per coordinator.
 [[nodiscard]] nlohmann::ordered_json coordinators_json(const FloorState& floor, Time now);
 /// The zones that clients have set.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All layers that can be drawn on the floor, and useful choices of them.
+import {drawCourses} from "./course_layers.js";
 import {drawBand, drawLocalGrid, drawNavigation} from "./fields.js";
 import {drawBall, drawDetections, drawField, drawMovingObstacles, drawObstacles, drawScale, drawScans,
         drawZones} from "./floor_layers.js";
@@ -30,7 +31,8 @@ export const layers = [
   {id: "proposed", name: "Proposed", key: "8", on: false,
    draw: (c, view) => drawPath(c, view, "proposed", palette.orange, [4, 3])},
   {id: "braked", name: "Stops if all braked now", key: "9", on: false, draw: drawBraked},
-  {id: "intents", name: "Intents", key: "0", on: false, draw: drawIntents},
+  {id: "courses", name: "Courses, with a mark for each second", key: "u", on: true, draw: drawCourses},
+  {id: "intents", name: "Intents", key: "0", on: false, draw: (c, view) => drawIntents(c, view)},
   {id: "moving", name: "Moving obstacles", key: "m", on: true, draw: drawMovingObstacles},
   {id: "goals", name: "Goals", key: "g", on: true, draw: drawGoals},
   {id: "robots", name: "Robots", key: "r", on: true, draw: drawRobots},
@@ -56,8 +58,8 @@ const kAlways = ["field", "obstacles", "zones", "moving", "robots", "selection",
 export const presets = [
   {id: "standard", name: "Standard", layers: layers.filter((layer) => layer.on).map((layer) => layer.id)},
   {id: "plain", name: "Robots only", layers: kAlways},
-  {id: "motions", name: "Motions", layers: [...kAlways, "executing", "granted", "proposed", "braked", "intents", "goals"]},
-  {id: "conflicts", name: "Conflicts", layers: [...kAlways, "granted", "ledger", "conflicts", "goals"]},
+  {id: "motions", name: "Motions", layers: [...kAlways, "executing", "granted", "proposed", "braked", "courses", "intents", "goals"]},
+  {id: "conflicts", name: "Conflicts", layers: [...kAlways, "granted", "ledger", "courses", "conflicts", "goals"]},
   {id: "perception", name: "Perception", layers: [...kAlways, "seen", "estimated", "detections", "scans", "trails"]},
   {id: "all", name: "All", layers: layers.map((layer) => layer.id)},
 ];

@@ -173,13 +173,13 @@ export function drawGoals(c, view) {
 
 /**
  * Where robots intend to go: the next point, then the goal.
- * @param {CanvasRenderingContext2D} c @param {View} view
+ * @param {CanvasRenderingContext2D} c @param {View} view @param {(robot: number) => boolean} isShown
  */
-export function drawIntents(c, view) {
+export function drawIntents(c, view, isShown = () => true) {
   const path = new Path2D();
   eachRobot(view, (v, at, columns) => {
     const x = v[at + columns.via_x], y = v[at + columns.via_y];
-    if (Number.isNaN(x)) return;
+    if (Number.isNaN(x) || !isShown(v[at])) return;
     const place = placeOf(v, at, columns);
     path.moveTo(place.x, place.y);
     path.lineTo(x, y);
@@ -191,8 +191,8 @@ export function drawIntents(c, view) {
 }
 
 /**
- * A line from each robot whose motion was denied to the robot that it would have met; red where the robots wait for
- * each other in a cycle.
+ * An arrow from each robot whose motion was denied to the robot that it would have met, and a dashed one from each robot
+ * that drives slowly by its course to the robot that it lets pass; red where the robots wait for each other in a cycle.
  * @param {CanvasRenderingContext2D} c @param {View} view
  */
 export function drawConflicts(c, view) {
@@ -200,27 +200,37 @@ export function drawConflicts(c, view) {
   const places = new Map();
   /** @type {Map<number, number>} */
   const waits = new Map();
+  const planned = new Set();
   eachRobot(view, (v, at, columns) => {
     places.set(v[at], placeOf(v, at, columns));
-    if (!Number.isNaN(v[at + columns.blocker])) waits.set(v[at], v[at + columns.blocker]);
+    const isDenied = !Number.isNaN(v[at + columns.blocker]);
+    const other = v[at + (isDenied ? columns.blocker : columns.waits_for)];
+    if (Number.isNaN(other)) return;
+    waits.set(v[at], other);
+    if (!isDenied) planned.add(v[at]);
   });
-  const lines = new Path2D(), circles = new Path2D();
+  const lines = new Path2D(), dashed = new Path2D(), circles = new Path2D();
   for (const [robot, blocker] of waits) {
     const from = places.get(robot), to = places.get(blocker);
     if (!from || !to) continue;
     let next = blocker;
     for (let i = 0; i < waits.size && next !== robot; ++i) next = waits.get(next) ?? -1;
-    const path = next === robot ? circles : lines;
+    const path = next === robot ? circles : planned.has(robot) ? dashed : lines;
     const angle = Math.atan2(to.y - from.y, to.x - from.x), head = 7 * view.pixel;
     path.moveTo(from.x, from.y);
     path.lineTo(to.x, to.y);
-    path.moveTo(to.x - head * Math.cos(angle - 0.4), to.y - head * Math.sin(angle - 0.4));
-    path.lineTo(to.x, to.y);
-    path.lineTo(to.x - head * Math.cos(angle + 0.4), to.y - head * Math.sin(angle + 0.4));
+    // Dashes begin anew at each moveTo, so the two sides of the head, from its tip on, have no gap.
+    for (const turn of [-0.4, 0.4]) {
+      path.moveTo(to.x, to.y);
+      path.lineTo(to.x - head * Math.cos(angle + turn), to.y - head * Math.sin(angle + turn));
+    }
   }
   c.lineWidth = 2 * view.pixel;
   c.strokeStyle = palette.orange;
   c.stroke(lines);
+  c.setLineDash([8 * view.pixel, 4 * view.pixel]);
+  c.stroke(dashed);
+  c.setLineDash([]);
   c.strokeStyle = palette.red;
   c.stroke(circles);
 }

@@ -5,7 +5,8 @@ import {Table} from "./table.js";
 
 export const robotTable = new Table("robots",
     [{id: "robot", title: "Robot"}, {id: "state", title: "State", text: true}, {id: "order", title: "Order", text: true},
-     {id: "to-go", title: "To go m"}, {id: "speed", title: "m/s"}, {id: "denied", title: "Denied", wraps: true},
+     {id: "to-go", title: "To go m"}, {id: "speed", title: "m/s"}, {id: "waits-for", title: "Waits for"},
+     {id: "denied", title: "Denied", wraps: true},
      {id: "verdict", title: "Verdict ms p50 / p99", extra: true}, {id: "missed", title: "Missed cycles", extra: true},
      {id: "clock", title: "Clock ms", extra: true}, {id: "error", title: "Error mm", extra: true}],
     "Robots", "No robot has been heard yet.");
@@ -36,6 +37,7 @@ function rowOf(r, scene, hasTeams, selected) {
       {text: r.order || "–", level: r.order === "blocked" ? "warning" : ""},
       number(r.distance_to_go_m, 2),
       number(r.speed_mps, 2),
+      number(r.waits_for),
       {text: denied + reasonsText(r.denials_by_reason), level: r.denied ? "warning" : "dim"},
       `${number(r.negotiation_p50_ms, 1)} / ${number(r.negotiation_p99_ms, 1)}`,
       {text: `${r.missed_cycles ?? "–"} of ${r.cycles ?? "–"}`, level: r.missed_cycles > 0.01 * r.cycles ? "warning" : ""},

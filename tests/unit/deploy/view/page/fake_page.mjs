@@ -216,7 +216,8 @@ export function openPage(html, {hash = "", storage = {}, prefersLight = false, i
     }
   });
   define("Path2D", FakeCanvas);
-  FakeCanvas.prototype.rect = FakeCanvas.prototype.closePath = FakeCanvas.prototype.quadraticCurveTo = () => {};
+  FakeCanvas.prototype.rect = FakeCanvas.prototype.closePath = FakeCanvas.prototype.quadraticCurveTo =
+      FakeCanvas.prototype.bezierCurveTo = () => {};
   define("Element", FakeElement);
   define("innerWidth", 1500);
   define("innerHeight", 900);
@@ -255,12 +256,14 @@ export function openPage(html, {hash = "", storage = {}, prefersLight = false, i
 }
 
 const kRobotColumns = ["id", "flags", "state", "true_x", "true_y", "true_heading", "seen_x", "seen_y", "seen_heading", "x", "y", "heading",
-                       "denied", "blocker", "goal_x", "goal_y", "via_x", "via_y", "nearest_x", "nearest_y"];
+                       "denied", "blocker", "goal_x", "goal_y", "via_x", "via_y", "nearest_x", "nearest_y",
+                       "waits_for"];
 const kVersionColumns = ["start", "x", "y", "vx", "vy", "inflation", "phases", "duration0", "ax0", "ay0"];
 const kRobots = [...kRobotColumns, ...["executing", "granted", "proposed"].flatMap((v) => kVersionColumns.map((c) => `${v}_${c}`))];
 const kSections = [{name: "robots", columns: kRobots}, {name: "ledger", columns: ["id", ...kVersionColumns.map((c) => `version_${c}`)]},
                    {name: "obstacles", columns: ["id", "x", "y", "vx", "vy", "radius", "age"]}, {name: "balls", columns: ["x", "y", "vx", "vy"]},
-                   {name: "detections", columns: ["camera", "kind", "x", "y", "heading", "radius"]}, {name: "beams", columns: ["robot", "x", "y"]}];
+                   {name: "detections", columns: ["camera", "kind", "x", "y", "heading", "radius"]}, {name: "beams", columns: ["robot", "x", "y"]},
+                   {name: "courses", columns: ["robot", "ahead", "x", "y", "vx", "vy"]}];
 
 /** A scene as the monitor sends it. */
 export function sceneOf(robots, changes = {}) {
@@ -270,18 +273,20 @@ export function sceneOf(robots, changes = {}) {
           channels: ["feedback/0"], ...changes};
 }
 
-/** A frame with robots at these places, as the monitor sends it. */
-export function frameOf(time, places) {
+/** A frame with robots at these places, and with these rows of courses, as the monitor sends it. */
+export function frameOf(time, places, courses = []) {
   const head = 12 + 4 * kSections.length;
-  const buffer = new ArrayBuffer(head + 4 * places.length * kRobots.length);
+  const buffer = new ArrayBuffer(head + 4 * (places.length * kRobots.length + courses.flat().length));
   const view = new DataView(buffer);
   view.setFloat64(0, time, true);
   view.setUint32(8, kSections.length, true);
   view.setUint32(12, places.length, true);
+  view.setUint32(head - 4, courses.length, true);
   const values = new Float32Array(buffer, head);
   values.fill(NaN);
-  places.forEach(({id, x, y}, i) => {
-    const row = {id, flags: 0, state: 3, true_x: x, true_y: y, true_heading: 0};
+  values.set(courses.flat(), places.length * kRobots.length);
+  places.forEach(({id, x, y, ...others}, i) => {
+    const row = {id, flags: 0, state: 3, true_x: x, true_y: y, true_heading: 0, ...others};
     for (const [name, value] of Object.entries(row)) values[i * kRobots.length + kRobots.indexOf(name)] = value;
   });
   return buffer;

@@ -274,7 +274,7 @@ test("presets and boxes switch layers, and the page remembers them", async () =>
 test("columns are chosen, remembered, and a warning in a hidden one is announced", async () => {
   const page = await openMonitor();
   const heads = (on) => [...on.element("panel-robots")].filter((node) => node.tagName === "TH" && !node.hidden).map((node) => node.textContent);
-  assert.deepEqual(heads(page), ["Robot", "State", "Order", "To go m", "m/s", "Denied"]);
+  assert.deepEqual(heads(page), ["Robot", "State", "Order", "To go m", "m/s", "Waits for", "Denied"]);
   const summary = [...page.element("columns-robots")].find((node) => node.tagName === "SUMMARY");
   assert.equal(summary.textContent, "Columns");
   const panels = panelsOf(kRobots);
@@ -286,7 +286,7 @@ test("columns are chosen, remembered, and a warning in a hidden one is announced
   page.element("column-robots-denied").check(false);
   assert.equal(summary.textContent, "Columns");
   const again = await openMonitor({storage: page.storage});
-  assert.deepEqual(heads(again), ["Robot", "State", "Order", "To go m", "m/s", "Error mm"]);
+  assert.deepEqual(heads(again), ["Robot", "State", "Order", "To go m", "m/s", "Waits for", "Error mm"]);
 });
 
 test("panels become windows, are closed, and come back; the page remembers them", async () => {

@@ -51,7 +51,7 @@ for (const theme of ["dark", "light"]) {
 
 test("the page has no colours but those of the style sheet, except for the league's ball and shadows", () => {
   const modules = pageFile("main.js").match(/"\.\/[a-z_]+\.js"/g).map((name) => name.slice(3, -1));
-  for (const name of [...modules, "planning.js", "planning_scene.js", "labels.js", "robot_layers.js"]) {
+  for (const name of [...modules, "planning.js", "planning_scene.js", "course_layers.js", "labels.js", "robot_layers.js"]) {
     const found = (pageFile(name).match(/#[0-9a-f]{6}\b/gi) ?? []).filter((colour) => colour !== "#ff8c1a");
     assert.deepEqual(found, [], name);
   }
