@@ -105,6 +105,10 @@ class Agent {
   void plan_courses() {
     if (course_start_) planner_.plan_courses(*course_start_, at_course_start_, rng_);
   }
+  /// Says how long the last call of plan_courses() took, by the wall clock.
+  void charge_courses(Duration taken) {
+    if (course_start_) planner_.charge_courses(taken);
+  }
   void on_course(std::shared_ptr<const DrivingCourse> course, Time now) {
     courses_.set_place(observations_.own().estimate().position_m);
     courses_.on_course(std::move(course), now);

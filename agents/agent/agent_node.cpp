@@ -17,6 +17,8 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
+/// A course that is delayed by less is not published again.
+constexpr Duration kNoticeableDelay{20'000'000};
 /// A course is repeated after this time, in case that a message was lost.
 constexpr Duration kCoursePeriod{500'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
@@ -314,7 +316,9 @@ void AgentNode::negotiate(Time start) {
 
 void AgentNode::plan_courses() {
   are_courses_due_ = false;
+  const Time begin = bus_.now();
   planning_ += duration_of([&] { agent_.plan_courses(); });
+  agent_.charge_courses(bus_.now() - begin);
   plan_durations_.add(planning_);
   publish_courses();
 }
@@ -327,7 +331,8 @@ void AgentNode::publish_courses() {
   }
   const DrivingCourse* course = agent_.course();
   const std::optional<Time> plan = course ? std::optional(course->planned_at) : std::nullopt;
-  const bool is_new = plan != published_plan_ || (course && course->start != published_start_);
+  const bool is_new = plan != published_plan_ ||
+                      (course && std::chrono::abs(course->start - published_start_) >= kNoticeableDelay);
   // A robot that has arrived is known from its versions.
   const bool is_over = !course || course->end() < robot_now();
   if (!is_new && (is_over || !has_elapsed(kCoursePeriod, course_published_at_))) return;

@@ -274,6 +274,10 @@ void MotionPlanner::plan_courses(Time next, const State& at_next, Rng& rng) {
   courses_->plan(query, rng);
 }
 
+void MotionPlanner::charge_courses(Duration taken) {
+  if (course_query_) courses_->charge(taken);
+}
+
 void MotionPlanner::pause(Time now) {
   const DrivingCourse* course = this->course();
   if (course && course->end() > now) courses_->give_up();

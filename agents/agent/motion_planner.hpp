@@ -61,6 +61,8 @@ class MotionPlanner {
   /// milliseconds, so call it after the motion of this cycle has been proposed. `next` is when the motion
   /// after this one starts, `at_next` the robot's state then.
   void plan_courses(Time next, const State& at_next, Rng& rng);
+  /// Says how long the last call of plan_courses() took.
+  void charge_courses(Duration taken);
   /// Gives up the course unless the robot has finished it: the robot does not drive.
   void pause(Time now);
   /// The course that the robot follows; nullptr if it has none.

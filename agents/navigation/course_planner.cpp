@@ -55,8 +55,10 @@ constexpr double kStraight_m = 0.003, kStraight_s = 0.03 + to_seconds(DrivingCou
 constexpr double kMaxWay_s = 1800;
 
 /// The effort that searches may spend per second on average, how much the robot may save up, and how much it
-/// may owe after a search. A state takes two to three microseconds.
-constexpr double kEffort_perS = 1'000, kMaxEffort = 10'000, kMaxDebt = 2'000;
+/// may owe after a search.
+constexpr double kEffort_perS = 1'000, kMaxEffort = 10'000, kMaxDebt = 500;
+/// The effort of a search that takes a second on an idle core.
+constexpr double kEffortOfSecond = 300'000;
 /// What is left for necessary searches before others begin.
 constexpr double kReserve = 1'000;
 /// After this many courses that it has lost within a small distance, the robot drives without one for kLost,
@@ -269,10 +271,20 @@ void CoursePlanner::plan(const Query& query, Rng& rng) {
   const double passed_s = to_seconds(std::chrono::abs(query.start - effort_at_));
   effort_ = std::min(kMaxEffort, effort_ + kEffort_perS * passed_s);
   effort_at_ = query.start;
-  if (effort_ <= 0) return;
+  last_effort_ = 0;
+  if (effort_ <= 0) {
+    if (needs_course_) keep_while_free(query);
+    return;
+  }
   const std::size_t before = search_.effort();
   plan_within_effort(query, rng);
-  effort_ = std::max(-kMaxDebt, effort_ - static_cast<double>(search_.effort() - before));
+  last_effort_ = static_cast<double>(search_.effort() - before);
+  effort_ = std::max(-kMaxDebt, effort_ - last_effort_);
+}
+
+void CoursePlanner::charge(Duration taken) {
+  const double more = kEffortOfSecond * to_seconds(taken) - last_effort_;
+  if (more > 0) effort_ = std::max(-kMaxDebt, effort_ - more);
 }
 
 void CoursePlanner::plan_within_effort(const Query& query, Rng& rng) {
@@ -319,13 +331,17 @@ void CoursePlanner::plan_own(const Query& query, Rng& rng) {
     retry_ = kRetry;
     return;
   }
-  // The others may change their courses.
-  const Time free_until =
-      std::min(conflict_.value_or(own_ ? own_->end() : query.start), own_ ? own_->end() : query.start);
-  const bool keeps = own_ && can_follow(query) && free_until - query.start > kFree;
-  if (!keeps) own_.reset();
+  const bool keeps = keep_while_free(query);
   retry_at_ = query.start + (keeps ? kRetryWithCourse : retry_);
   if (!keeps) retry_ = std::min(2 * retry_, kMaxRetry);
+}
+
+bool CoursePlanner::keep_while_free(const Query& query) {
+  // The others may change their courses.
+  const bool keeps = own_ && can_follow(query) &&
+                     std::min(conflict_.value_or(own_->end()), own_->end()) - query.start > kFree;
+  if (!keeps) own_.reset();
+  return keeps;
 }
 
 void CoursePlanner::improve(const Query& query, Rng& rng) {

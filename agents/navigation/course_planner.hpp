@@ -56,6 +56,9 @@ class CoursePlanner {
   /// Plans what follow() has found necessary, from query.start on: the start of the motion after this one.
   /// Also plans courses for others.
   void plan(const Query& query, Rng& rng);
+  /// Says how long the last call of plan() took. Where no core is idle, this counts as more effort, so that
+  /// robots search less.
+  void charge(Duration taken);
 
   /// Gives up the course: the robot has another target, or does not drive.
   void give_up();
@@ -88,6 +91,9 @@ class CoursePlanner {
   [[nodiscard]] std::optional<DrivingCourse> find_course(const Query& query, std::optional<Time> before,
                                                          Rng& rng);
   void plan_own(const Query& query, Rng& rng);
+  /// Gives up a course that will come too close to others soon: no other one has been found. Returns whether
+  /// the robot keeps its course.
+  bool keep_while_free(const Query& query);
   void set_course(DrivingCourse course);
   /// Replaces the course by a faster one if there is one.
   void improve(const Query& query, Rng& rng);
@@ -118,6 +124,7 @@ class CoursePlanner {
   double improve_s_ = 0;  // mean time between two attempts to improve the course
   double effort_ = 0;     // that the robot may spend on searches, as of effort_at_
   Time effort_at_{};
+  double last_effort_ = 0;  // of the last call of plan()
   std::span<const CourseOffer> offers_;
 };
 

@@ -21,7 +21,7 @@ constexpr double kMinSpeed_mps = 0.2;
 /// Goals are within this distance, and within what a robot drives in this time.
 constexpr double kReach_m = 5, kReach_s = 5;
 /// A state takes two to three microseconds, and messages wait until a search ends.
-constexpr std::size_t kMaxExpanded = 4'000;
+constexpr std::size_t kMaxExpanded = 1'500;
 /// Courses that take longer are not looked for.
 constexpr double kLongest_s = 15;
 const double kLongestStraight_s = to_seconds(DrivingCourse::kSample) * (DrivingCourse::kMaxStates - 1);

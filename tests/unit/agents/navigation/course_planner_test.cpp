@@ -264,14 +264,19 @@ TEST_CASE("on a large floor, a robot continues its course until it arrives") {
   if (robot.arrived_at) CHECK(driven_s(robot) < time_alone_s({-8, 0}, {6, 0}) + 1.5);
 }
 
-TEST_CASE("searches without success take no more effort than a robot may spend") {
-  CourseCrowd crowd;
-  // The gaps of a ring around the target look open on the grid of the estimates, but are too narrow.
-  const Vec2 target_m(1.5, 0);
+/// Robots that stay in a ring around a place. Its gaps look open on the grid of the estimates, but are too
+/// narrow.
+void add_ring(CourseCrowd& crowd, const Vec2& centre_m) {
   const double turn_rad = std::numbers::pi / 4, gap_m = 2 * (crowd.rules.min_separation_m() - 0.01);
   for (int i = 0; i < 8; ++i)
-    crowd.staying_m.push_back(target_m +
+    crowd.staying_m.push_back(centre_m +
                               rotated(Vec2(gap_m / (2 * std::sin(turn_rad / 2)), 0), i * turn_rad));
+}
+
+TEST_CASE("searches without success take no more effort than a robot may spend") {
+  CourseCrowd crowd;
+  const Vec2 target_m(1.5, 0);
+  add_ring(crowd, target_m);
   CrowdRobot& robot = crowd.add({-2, 0}, target_m);
   const double duration_s = 10;
   crowd.run_for(from_seconds(duration_s));
@@ -279,6 +284,37 @@ TEST_CASE("searches without success take no more effort than a robot may spend")
   const auto effort = static_cast<double>(robot.planner.effort());
   CHECK(effort > 15'000);
   CHECK(effort < 10'000 + 2'000 * duration_s + 10'000);
+}
+
+TEST_CASE("a robot whose searches have taken too long gives up its course when something comes near") {
+  const Duration taken = GENERATE(Duration{0}, Duration{100us}, Duration{1s});
+  CAPTURE(to_seconds(taken));
+  FloorRules rules;
+  CoursePlanner planner(1, rules, ObstacleWorld());
+  Rng rng(1);
+  CoursePlanner::Query query;
+  query.start = kStart;
+  query.at_start.position_m = {-2, 0};
+  query.target_m = {2, 0};
+  query.goal_m = query.target_m;
+  planner.follow(query);
+  planner.plan(query, rng);
+  REQUIRE(planner.course());
+  const Time first = planner.course()->planned_at;
+  planner.charge(taken);
+  const std::size_t effort = planner.effort();
+  const std::vector<Vec2> staying_m{{-1.6, 0}};
+  query.around.staying_m = staying_m;
+  for (int cycle = 0; cycle < 20 && planner.course() && planner.course()->planned_at == first; ++cycle) {
+    REQUIRE(planner.follow(query));
+    query.at_start =
+        state_after(query.at_start, planner.acceleration_mps2(query, kCycle), to_seconds(kCycle));
+    query.start += kCycle;
+    planner.plan(query, rng);
+  }
+  const bool may_search = taken < 1s;
+  CHECK((planner.course() != nullptr) == may_search);
+  CHECK((planner.effort() > effort) == may_search);
 }
 
 TEST_CASE("a robot that loses its courses at one place drives without one for longer and longer") {
