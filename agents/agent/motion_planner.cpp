@@ -246,23 +246,25 @@ bool MotionPlanner::find_robots_without_course(const Query& query, const Vec2& p
 
 const DrivingCourse* MotionPlanner::follow_course(const Query& query, const State& at_start,
                                                   const Route& route) {
-  const auto with_course = query.courses.nearby(at_start.position_m, kCourseHorizon_m, query.now);
-  if (!may_follow_course(query, at_start, route) ||
-      !find_robots_without_course(query, at_start.position_m, with_course)) {
+  CoursePlanner::Query course{query.start, at_start, route.end_m, {}, rules_.limits, {}};
+  course.limits.speed_mps = std::min(course.limits.speed_mps, max_speed_mps(query, at_start));
+  course.goal_m = course_goal_m(at_start.position_m, route_.remaining_waypoints_m(), route.end_m,
+                                CourseSearch::reach_m(course.limits.speed_mps));
+  bool may_follow = may_follow_course(query, at_start, route);
+  if (may_follow && course.goal_m) {
+    course.around = {query.courses.nearby(at_start.position_m, kCourseHorizon_m, query.now),
+                     query.courses.offers(query.now)};
+    may_follow = find_robots_without_course(query, at_start.position_m, course.around.others);
+    course.around.leaving_m = leaving_m_;
+    course.around.staying_m = staying_m_;
+  }
+  if (!may_follow) {
     no_course_until_ = query.now + kWithoutCourse;
     if (courses_) courses_->give_up();
   }
   if (query.now < no_course_until_) return nullptr;
   if (!courses_) courses_.emplace(robot_, rules_, route_.obstacles().fixed_world());
-  MotionLimits limits = rules_.limits;
-  limits.speed_mps = std::min(limits.speed_mps, max_speed_mps(query, at_start));
-  course_query_ = {query.start,
-                   at_start,
-                   route.end_m,
-                   course_goal_m(at_start.position_m, route_.remaining_waypoints_m(), route.end_m,
-                                 CourseSearch::reach_m(limits.speed_mps)),
-                   limits,
-                   {with_course, query.courses.offers(query.now), leaving_m_, staying_m_}};
+  course_query_ = course;
   return courses_->follow(*course_query_);
 }
 
