@@ -40,6 +40,7 @@ void CourseRelay::on_course(const msg::Course& message) {
   if (!coordinator_.is_granting()) return;
   const auto course = decode(message, bus_.now());
   if (!course) return drops_.count(DropReason::kMalformedCourse);
+  if (!course->is_empty() && !course->is_about(bus_.now())) return drops_.count(DropReason::kMalformedCourse);
   if (!has_robot(course->robot)) return drops_.count(DropReason::kUnknownRobot);
   if (++sent_by(course->robot).courses > max_courses_) return drops_.count(DropReason::kFrequentCourse);
   msg::Course shared = encode(*course);
@@ -50,6 +51,7 @@ void CourseRelay::on_offer(const msg::CourseOffer& message) {
   if (!coordinator_.is_granting()) return;
   const auto offer = decode(message, bus_.now());
   if (!offer) return drops_.count(DropReason::kMalformedCourseOffer);
+  if (!offer->course.is_about(bus_.now())) return drops_.count(DropReason::kMalformedCourseOffer);
   if (!has_robot(offer->by) || !has_robot(offer->course.robot))
     return drops_.count(DropReason::kUnknownRobot);
   if (++sent_by(offer->by).offers > kOffersPerCycle * max_courses_)

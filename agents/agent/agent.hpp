@@ -100,12 +100,13 @@ class Agent {
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
-  /// Plans courses for the cycles to come. It may take milliseconds: call it after the proposal has been
-  /// sent.
+  /// Plans courses for the cycles to come. It may take milliseconds: call it when the verdict on the
+  /// proposal has been forwarded.
   void plan_courses() {
     if (course_start_) planner_.plan_courses(*course_start_, at_course_start_, rng_);
   }
-  /// Says how long the last call of plan_courses() took, by the wall clock.
+  /// Says how long the last call of plan_courses() took, by the bus's time, which does not pass meanwhile in
+  /// simulations: these have to be repeatable.
   void charge_courses(Duration taken) {
     if (course_start_) planner_.charge_courses(taken);
   }

@@ -13,10 +13,9 @@ constexpr Duration kOfferAge{200'000'000};
 constexpr std::size_t kMaxNearby = 40;  ///< number of nearest courses that are considered
 /// Number of offers that are kept, in total and of one robot.
 constexpr std::size_t kMaxOffers = 64, kMaxOffersOfRobot = 16;
-/// Courses start within a few cycles. No course takes a minute.
-constexpr Duration kMaxLead{5'000'000'000}, kMaxAge{60'000'000'000};
 constexpr Duration kForgetPeriod{200'000'000};
-/// Robots that are farther away do not come near before their courses are repeated.
+/// Courses of robots farther away are ignored, those that replace known ones too: a known course is forgotten
+/// before its robot can have come near.
 constexpr double kFar_m = 8;
 /// Courses are rounded, and a robot may be a little faster for a moment.
 constexpr double kSpeedTolerance_mps = 0.1;
@@ -32,7 +31,7 @@ CourseBook::CourseBook(RobotId self, const FloorRules& rules)
 
 bool CourseBook::is_of_use(const DrivingCourse& course, Time now) const {
   if (course.is_empty()) return true;
-  if (course.start > now + kMaxLead || course.start < now - kMaxAge) return false;
+  if (!course.is_about(now)) return false;
   const double max_step_m = max_speed_mps_ * to_seconds(DrivingCourse::kSample);
   const State* last = nullptr;
   for (const State& state : course.states) {

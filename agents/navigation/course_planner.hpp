@@ -56,8 +56,8 @@ class CoursePlanner {
   /// Plans what follow() has found necessary, from query.start on: the start of the motion after this one.
   /// Also plans courses for others.
   void plan(const Query& query, Rng& rng);
-  /// Says how long the last call of plan() took. Where no core is idle, this counts as more effort, so that
-  /// robots search less.
+  /// Says how long the last call of plan() took. Where no core is idle, or cores are slow, this counts as
+  /// more effort, so that robots search less.
   void charge(Duration taken);
 
   /// Gives up the course: the robot has another target, or does not drive.

@@ -18,6 +18,8 @@ struct DrivingCourse {
   /// Courses are repeated more often than this. A course that is not repeated is forgotten, because its agent
   /// may have ended.
   static constexpr Duration kMaxSilence{1'500'000'000};
+  /// Courses start within a few cycles, and none takes a minute.
+  static constexpr Duration kMaxLead{5'000'000'000}, kMaxAge{60'000'000'000};
 
   RobotId robot = 0;
   Time planned_at{};  ///< identifies the course among those of its robot
@@ -30,6 +32,8 @@ struct DrivingCourse {
   bool is_empty() const { return states.empty(); }
   const Vec2& goal_m() const { return states.back().position_m; }
   Time end() const { return start + kSample * static_cast<std::int64_t>(states.size() - 1); }
+  /// Whether the course starts no more than kMaxAge before a time, and no more than kMaxLead after it.
+  bool is_about(Time t) const { return start <= t + kMaxLead && start >= t - kMaxAge; }
   /// The state at a time: at rest before the start and after the end. Exact if the acceleration is constant
   /// between two samples.
   State state_at(Time t) const;

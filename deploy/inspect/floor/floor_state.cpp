@@ -106,7 +106,7 @@ void FloorState::on(const msg::Course& message, Time now) {
   if (!is_coordinator(message.header().sender())) return;
   std::optional<DrivingCourse> course = decode(message, now);
   RobotView* view = course ? robot(course->robot) : nullptr;
-  if (view == nullptr) return;
+  if (view == nullptr || (!course->is_empty() && !course->is_about(now))) return;
   const DrivingCourse* known = fresh(view->course, now, DrivingCourse::kMaxSilence);
   const bool is_late = known && course->planned_at < known->planned_at;
   if (!is_late) view->course = {*std::move(course), now};

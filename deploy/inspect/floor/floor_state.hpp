@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -36,7 +37,8 @@ inline constexpr Duration kMaxShownAge = std::chrono::seconds(1);
 template <typename Value>
 const Value* fresh(const std::optional<Received<Value>>& received, Time now,
                    Duration max_age = kMaxShownAge) {
-  return received && now - received->at <= max_age ? &received->value : nullptr;
+  // A time in the future was recorded before the clock was set back.
+  return received && std::chrono::abs(now - received->at) <= max_age ? &received->value : nullptr;
 }
 
 /// A message of any topic.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/crowds/crowd_scene_file.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
 #include <variant>

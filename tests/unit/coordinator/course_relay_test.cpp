@@ -93,6 +93,25 @@ TEST_CASE("a granting coordinator relays an offer, unchanged but for the header"
   CHECK(floor.relay.drops().total() == 0);
 }
 
+TEST_CASE("courses and offers that start a minute before or five seconds after their arrival are dropped") {
+  const auto [later, is_relayed] = GENERATE(table<Duration, bool>({{Duration{-59'000'000'000}, true},
+                                                                   {Duration{-61'000'000'000}, false},
+                                                                   {Duration{4'900'000'000}, true},
+                                                                   {Duration{5'100'000'000}, false}}));
+  CAPTURE(to_seconds(later));
+  Floor floor;
+  floor.register_both();
+  DrivingCourse course = course_of(1);
+  course.start = kNow + later;
+  floor.send(course);
+  CHECK(floor.courses.size() == (is_relayed ? 1 : 0));
+  CHECK(floor.relay.drops().total(DropReason::kMalformedCourse) == (is_relayed ? 0 : 1));
+  course.robot = 2;
+  floor.send(CourseOffer{course, kNow - Duration{9}, 1});
+  CHECK(floor.offers.size() == (is_relayed ? 1 : 0));
+  CHECK(floor.relay.drops().total(DropReason::kMalformedCourseOffer) == (is_relayed ? 0 : 1));
+}
+
 TEST_CASE("a coordinator that does not grant relays nothing") {
   Floor floor;
   SECTION("not all robots have registered") { floor.receive(registration_of(floor.a, kEpoch)); }

@@ -15,6 +15,16 @@ using namespace std::chrono_literals;
 constexpr Duration kCycle = CourseCrowd::kCycle;
 constexpr Time kStart = CourseCrowd::kStart;
 
+/// A robot at rest at (-2, 0) that drives to (2, 0).
+CoursePlanner::Query drive_across() {
+  CoursePlanner::Query query;
+  query.start = kStart;
+  query.at_start.position_m = {-2, 0};
+  query.target_m = {2, 0};
+  query.goal_m = query.target_m;
+  return query;
+}
+
 TEST_CASE("a robot alone drives straight, and as fast as it may") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
@@ -189,11 +199,7 @@ TEST_CASE("what is planned in a cycle is followed from the next cycle on") {
   FloorRules rules;
   CoursePlanner planner(1, rules, ObstacleWorld());
   Rng rng(1);
-  CoursePlanner::Query query;
-  query.start = kStart;
-  query.at_start.position_m = {-2, 0};
-  query.target_m = {2, 0};
-  query.goal_m = query.target_m;
+  CoursePlanner::Query query = drive_across();
   CHECK_FALSE(planner.follow(query));
   CHECK_FALSE(planner.course());
   query.start += kCycle;
@@ -227,11 +233,7 @@ TEST_CASE("a robot without a goal for its course gives its course up, searches f
   FloorRules rules;
   CoursePlanner planner(1, rules, ObstacleWorld());
   Rng rng(1);
-  CoursePlanner::Query query;
-  query.start = kStart;
-  query.at_start.position_m = {-2, 0};
-  query.target_m = {2, 0};
-  query.goal_m = query.target_m;
+  CoursePlanner::Query query = drive_across();
   planner.follow(query);
   planner.plan(query, rng);
   REQUIRE(planner.course());
@@ -292,11 +294,7 @@ TEST_CASE("a robot whose searches have taken too long gives up its course when s
   FloorRules rules;
   CoursePlanner planner(1, rules, ObstacleWorld());
   Rng rng(1);
-  CoursePlanner::Query query;
-  query.start = kStart;
-  query.at_start.position_m = {-2, 0};
-  query.target_m = {2, 0};
-  query.goal_m = query.target_m;
+  CoursePlanner::Query query = drive_across();
   planner.follow(query);
   planner.plan(query, rng);
   REQUIRE(planner.course());

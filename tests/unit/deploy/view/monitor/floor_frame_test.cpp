@@ -94,6 +94,20 @@ TEST_CASE(
   CHECK(floor.shown(kNow + 2900ms) == 0);
 }
 
+TEST_CASE(
+    "courses that start long before or after they arrive are not shown, and none after the clock is set "
+    "back") {
+  const auto is_shown = [](Duration later, Duration seen_after) {
+    Floor floor;
+    floor.state.on(relayed(straight_course(3, kNow + later, 0s, {0, 0}, {1, 0}, 3s)), kNow);
+    return floor.shown(kNow + seen_after) > 0;
+  };
+  CHECK(is_shown(4s, 0s));
+  CHECK_FALSE(is_shown(6s, 0s));
+  CHECK_FALSE(is_shown(-61s, 0s));
+  CHECK_FALSE(is_shown(0s, -2s));
+}
+
 TEST_CASE("a course that was planned earlier, or that no coordinator has relayed, is not shown") {
   const DrivingCourse course = straight_course(3, kNow, 0s, {0, 0}, {1, 0}, 3s);
   Floor floor;
