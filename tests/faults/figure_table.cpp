@@ -11,12 +11,21 @@
 
 namespace sidestep {
 
-FigureTable::FigureTable(const std::string& title) : title_(title) { print_to(stdout, "{}\n", title_); }
+FigureTable::FigureTable(const std::string& title, Judged judged) : title_(title), judged_(judged) {
+  print_to(stdout, "{}\n", title_);
+}
+
+bool FigureTable::is_open(const std::string& name) const {
+  constexpr int kMaxRuns = 3;
+  const auto row = std::ranges::find(rows_, name, &Row::name);
+  return judged_ == Judged::kMajority && row != rows_.end() && row->missed > 0 && row->runs < kMaxRuns;
+}
 
 void FigureTable::add(const MeasuredRun& run) {
   auto row = std::ranges::find(rows_, run.row, &Row::name);
-  if (row == rows_.end()) row = rows_.insert(rows_.end(), Row{run.row, 0, 0, ""});
+  if (row == rows_.end()) row = rows_.insert(rows_.end(), Row{.name = run.row, .latest_miss = {}});
   ++row->runs;
+  row->is_unsafe |= run.is_unsafe;
   if (!run.misses.empty()) {
     ++row->missed;
     row->latest_miss = run.misses.front();
@@ -33,7 +42,10 @@ void FigureTable::print() const {
 
 int FigureTable::missed() const {
   int sum = 0;
-  for (const Row& row : rows_) sum += row.missed;
+  for (const Row& row : rows_) {
+    const bool is_row_missed = row.is_unsafe || 2 * row.missed > row.runs;
+    sum += judged_ == Judged::kEachRun ? row.missed : static_cast<int>(is_row_missed);
+  }
   return sum;
 }
 
