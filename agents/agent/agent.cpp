@@ -110,11 +110,14 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   const Version& base = negotiation_.held().base_at(start);
   std::optional<MotionPlan> plan = planner_.plan({now, start, base, negotiation_.lead(), max_speed_mps,
                                                   max_lag, assignment(), observations_, courses_, rng_});
-  if (plan) {
-    course_start_ = start + negotiation_.lead() * cycle_;
-    at_course_start_ = base.trajectory.state_at(*course_start_);
-  }
+  if (plan) course_start_ = start + negotiation_.lead() * cycle_;
   return plan;
+}
+
+void Agent::plan_courses() {
+  if (!course_start_) return;
+  const Version& base = negotiation_.held().base_at(*course_start_);
+  planner_.plan_courses(*course_start_, base.trajectory.state_at(*course_start_), rng_);
 }
 
 std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
@@ -126,7 +129,6 @@ std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
   const bool waits = goal && strangers_.is_at(goal->position_m);
   planner_.on_search(plan, result.desired_is_clear || waits, now);
   if (result.count == 0) return std::nullopt;
-  at_course_start_ = result.candidates.front().state_at(*course_start_);
   return negotiation_.propose({result.candidates.data(), result.count}, plan.base, now, plan.intent);
 }
 

@@ -100,11 +100,9 @@ class Agent {
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
-  /// Plans courses for the cycles to come. It may take milliseconds: call it when the verdict on the
-  /// proposal has been forwarded.
-  void plan_courses() {
-    if (course_start_) planner_.plan_courses(*course_start_, at_course_start_, rng_);
-  }
+  /// Plans courses for the cycles to come. It may take milliseconds: call it when the verdict on the proposal
+  /// has been forwarded.
+  void plan_courses();
   /// Says how long the last call of plan_courses() took, by the bus's time, which does not pass meanwhile in
   /// simulations: these have to be repeatable.
   void charge_courses(Duration taken) {
@@ -172,7 +170,6 @@ class Agent {
   StrangerWatch strangers_;
   CourseBook courses_;
   std::optional<Time> course_start_;  // start of the motion after the one planned in this cycle
-  State at_course_start_;
   Rng rng_;
   std::optional<Version> forwarded_;  // granted version that has not started yet
   bool is_stopping_ = false;

@@ -115,7 +115,8 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
     commanded_ = true;
     publish_command(*result.command);
   }
-  if (are_courses_due_) plan_courses();
+  // Verdicts also answer requests that measure the coordinator's clock.
+  if (are_courses_due_ && result.round_trip) plan_courses();
 }
 
 void AgentNode::on_world_state(const msg::WorldState& message) {
@@ -297,7 +298,7 @@ void AgentNode::negotiate_if_time() {
 }
 
 void AgentNode::negotiate(Time start) {
-  are_courses_due_ = false;
+  if (std::exchange(are_courses_due_, false)) plan_durations_.add(planning_);  // no verdict has come
   if (!agent_.may_propose(robot_now()) || !update_clocks()) return;
   if (const auto rest = agent_.propose_rest_version(robot_now(), start)) return publish_proposal(*rest);
   const double max_speed_mps = clocks_.max_speed_mps(bus_.now());

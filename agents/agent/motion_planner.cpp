@@ -258,6 +258,7 @@ const DrivingCourse* MotionPlanner::follow_course(const Query& query, const Stat
     course.around.leaving_m = leaving_m_;
     course.around.staying_m = staying_m_;
   }
+  if (!may_follow || !course.goal_m) resting_.clear();
   if (!may_follow) {
     no_course_until_ = query.now + kWithoutCourse;
     if (courses_) courses_->give_up();

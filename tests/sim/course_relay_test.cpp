@@ -167,15 +167,17 @@ TEST_CASE("agents plan courses after the verdict, so that neither their proposal
   IdealFloor floor(circle_of_five(), 1);
   SimBus observer(floor.network);
   observer.become_observer();
-  std::map<RobotId, bool> waits_for_verdict;
-  observer.subscribe(topics::kProposal, [&](const msg::Proposal& m) { waits_for_verdict[m.robot()] = true; });
+  std::map<RobotId, std::uint64_t> proposed, judged;  // numbers of the last proposals
+  observer.subscribe(topics::kProposal, [&](const msg::Proposal& m) {
+    proposed[m.robot()] = m.candidates()[0].version_number();
+  });
   for (const RobotSpec& robot : floor.scenario.robots)
     observer.subscribe(topics::kVerdict, robot.id,
-                       [&](const msg::Verdict& m) { waits_for_verdict[m.robot()] = false; });
+                       [&](const msg::Verdict& m) { judged[m.robot()] = m.proposal_number(); });
   int courses = 0;
   observer.subscribe(topics::kCourse, [&](const msg::Course& m) {
     CAPTURE(m.robot());
-    CHECK_FALSE(waits_for_verdict[m.robot()]);
+    CHECK(judged[m.robot()] == proposed[m.robot()]);
     ++courses;
   });
   REQUIRE(floor.run_until_speed(0.5));

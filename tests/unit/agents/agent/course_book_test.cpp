@@ -287,7 +287,7 @@ TEST_CASE("no more than 64 offers are kept at a time") {
 
 /// A course of two seconds from a random place in a random direction.
 DrivingCourse driving(RobotId robot, Rng& rng, Time planned_at) {
-  DrivingCourse course = resting(robot, random_vector(rng, 5), planned_at);
+  DrivingCourse course = resting(robot, random_vector(rng, 4), planned_at);
   const Vec2 velocity_mps = random_vector(rng, 1.4);
   State at = course.states.front();
   at.velocity_mps = velocity_mps;
