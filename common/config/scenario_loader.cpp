@@ -231,6 +231,7 @@ void read_keys(YamlMap& map, const std::string& file_name, const OccupancyMap* m
   // placement is invalid.
   map.find("robots");
   map.find("circle");
+  map.find("disc");
   map.find("streams");
   map.finish();
   read_robots(map, scenario);

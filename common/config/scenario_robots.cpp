@@ -69,37 +69,68 @@ PlacedRobot read_robot(YamlMap& map) {
   return placed;
 }
 
-/// Places robots on a circle, given the chord between neighbours. Each faces its goal, which is the opposite
-/// point.
-void read_circle(YamlMap& circle, std::vector<PlacedRobot>& robots) {
-  int count = 0, first_id = 0;
+/// A group of robots around a centre, each of which swaps places with the opposite one.
+struct SwapGroup {
+  int first_id = 0, count = 0;
   double spacing_m = 0;
   Vec2 centre_m{0, 0};
-  for (const char* key : {"count", "spacing_m"}) (void)circle.require(key);
-  circle.read("first_id", kRobotId, first_id);
-  circle.read("count", {2, static_cast<double>(kMaxRobots)}, count);
-  circle.read("spacing_m", {0.01, 100}, spacing_m);
-  circle.read("centre_m", kCoordinate_m, centre_m);
-  circle.finish();
-  const int available = static_cast<int>(kMaxRobots) - first_id;
-  if (count > available) {
-    circle.location_of("count").fail(fmt::format(
-        "more robots than ids: expected at most {1} from id {0} on, got {2}", first_id, available, count));
+  int line = 0;
+};
+
+SwapGroup read_swap_group(YamlMap& map) {
+  SwapGroup group;
+  for (const char* key : {"count", "spacing_m"}) (void)map.require(key);
+  map.read("first_id", kRobotId, group.first_id);
+  map.read("count", {2, static_cast<double>(kMaxRobots)}, group.count);
+  map.read("spacing_m", {0.01, 100}, group.spacing_m);
+  map.read("centre_m", kCoordinate_m, group.centre_m);
+  map.finish();
+  group.line = map.location().line;
+  const int available = static_cast<int>(kMaxRobots) - group.first_id;
+  if (group.count > available) {
+    map.location_of("count").fail(
+        fmt::format("more robots than ids: expected at most {1} from id {0} on, got {2}", group.first_id,
+                    available, group.count));
   }
-  const double radius_m = spacing_m / (2 * std::sin(std::numbers::pi / count));
-  const int line = circle.location().line;
-  for (int i = 0; i < count; ++i) {
-    const double angle_rad = 2 * std::numbers::pi * i / count;
-    const Vec2 radius = rotated(Vec2(radius_m, 0), angle_rad);
-    PlacedRobot placed;
-    placed.robot = {static_cast<RobotId>(first_id + i),
-                    i % 2 == 0 ? Team::kBlue : Team::kYellow,
-                    centre_m + radius,
-                    wrapped_rad(angle_rad + std::numbers::pi),
-                    {Goal{centre_m - radius, std::nullopt}}};
-    placed.lines = {line, {line}};
-    robots.push_back(placed);
-  }
+  return group;
+}
+
+/// Adds a robot that faces its goal, the point opposite its start.
+void add_to_group(const SwapGroup& group, int number, const Vec2& from_centre_m,
+                  std::vector<PlacedRobot>& robots) {
+  PlacedRobot placed;
+  placed.robot = {static_cast<RobotId>(group.first_id + number),
+                  number % 2 == 0 ? Team::kBlue : Team::kYellow,
+                  group.centre_m + from_centre_m,
+                  std::atan2(-from_centre_m.y(), -from_centre_m.x()),
+                  {Goal{group.centre_m - from_centre_m, std::nullopt}}};
+  placed.lines = {group.line, {group.line}};
+  robots.push_back(placed);
+}
+
+/// Places robots on a circle, given the chord between neighbours.
+void read_circle(YamlMap& circle, std::vector<PlacedRobot>& robots) {
+  const SwapGroup group = read_swap_group(circle);
+  const double radius_m = group.spacing_m / (2 * std::sin(std::numbers::pi / group.count));
+  for (int i = 0; i < group.count; ++i)
+    add_to_group(group, i, rotated(Vec2(radius_m, 0), 2 * std::numbers::pi * i / group.count), robots);
+}
+
+/// Places robots on those points of a triangular lattice that are nearest to the middle of one of its
+/// triangles, so that no robot starts at its goal.
+void read_disc(YamlMap& disc, std::vector<PlacedRobot>& robots) {
+  const SwapGroup group = read_swap_group(disc);
+  const int reach = static_cast<int>(std::ceil(std::sqrt(group.count))) + 2;
+  const Vec2 middle(0.5, 0.5 / std::numbers::sqrt3);
+  std::vector<Vec2> points;  // in units of the spacing
+  for (int row = -reach; row <= reach; ++row)
+    for (int column = -reach; column <= reach; ++column)
+      points.push_back(Vec2(column + 0.5 * (row % 2), std::sqrt(0.75) * row) - middle);
+  // Rounding must not decide between points that are equally far away.
+  std::ranges::stable_sort(points, {},
+                           [](const Vec2& point) { return std::llround(1e6 * point.squaredNorm()); });
+  for (int i = 0; i < group.count; ++i)
+    add_to_group(group, i, group.spacing_m * points[static_cast<std::size_t>(i)], robots);
 }
 
 /// Places robots in a square grid, one per cell. In each row, pairs that drive along x alternate with pairs
@@ -146,10 +177,12 @@ void read_robots(YamlMap& map, Scenario& scenario) {
   read_optional_list(map, "robots", 0, kMaxRobots,
                      [&](YamlMap& robot) { robots.push_back(read_robot(robot)); });
   read_section(map, "circle", [&](YamlMap& circle) { read_circle(circle, robots); });
+  read_section(map, "disc", [&](YamlMap& disc) { read_disc(disc, robots); });
   read_section(map, "streams", [&](YamlMap& streams) { read_streams(streams, robots); });
   if (YamlSchema* const schema = map.schema())
-    return schema->require_any(std::array<std::string, 3>{"robots", "circle", "streams"});
-  if (robots.empty()) map.location().fail("no robots, expected a key \"robots\", \"circle\" or \"streams\"");
+    return schema->require_any(std::array<std::string, 4>{"robots", "circle", "disc", "streams"});
+  if (robots.empty())
+    map.location().fail("no robots, expected a key \"robots\", \"circle\", \"disc\" or \"streams\"");
   std::stable_sort(robots.begin(), robots.end(),
                    [](const PlacedRobot& a, const PlacedRobot& b) { return a.robot.id < b.robot.id; });
   std::vector<RobotLines> lines;

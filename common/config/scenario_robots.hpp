@@ -6,8 +6,8 @@
 
 namespace sidestep {
 
-/// Reads the keys "robots", "circle" and "streams", and checks starts and goals against the field, the
-/// obstacles and each other. Precondition: the rest of the scenario has been read. Throws ConfigError.
+/// Reads the keys "robots", "circle", "disc" and "streams", and checks starts and goals against the field,
+/// the obstacles and each other. Precondition: the rest of the scenario has been read. Throws ConfigError.
 void read_robots(YamlMap& map, Scenario& scenario);
 
 }  // namespace sidestep

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/scenario_loader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numbers>
 
 #include "tests/catch.hpp"
 #include "tests/unit/common/config/scenario_errors.hpp"
@@ -47,6 +49,29 @@ TEST_CASE("robots in a circle are evenly spaced and their goals lie opposite the
     CHECK((robots[i].goals.back().position_m + robots[i].start_m).norm() == Approx(0).margin(1e-9));
     CHECK(robots[i].team != next.team);
   }
+}
+
+TEST_CASE("robots in a disc fill a lattice, and their goals lie opposite their starts") {
+  const int count = GENERATE(2, 3, 32, 100, 1000);
+  CAPTURE(count);
+  const Scenario scenario =
+      parse_scenario("field: {length_m: 40, width_m: 40}\ndisc: {count: " + std::to_string(count) +
+                         ", spacing_m: 0.42, centre_m: [1, 2]}\n",
+                     "disc.yaml");
+  const auto& robots = scenario.robots;
+  REQUIRE(robots.size() == static_cast<std::size_t>(count));
+  double farthest_m = 0;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const Vec2 from_centre_m = robots[i].start_m - Vec2(1, 2);
+    farthest_m = std::max(farthest_m, from_centre_m.norm());
+    CHECK((robots[i].goals.back().position_m + robots[i].start_m - Vec2(2, 4)).norm() < 1e-9);
+    double nearest_m = 1e9;
+    for (std::size_t j = 0; j < robots.size(); ++j)
+      if (i != j) nearest_m = std::min(nearest_m, (robots[i].start_m - robots[j].start_m).norm());
+    if (nearest_m != Approx(0.42)) FAIL("robot " << i << " is " << nearest_m << " m from its neighbour");
+  }
+  // A point of the lattice has an area of spacing² · √3 / 2.
+  CHECK(farthest_m < std::sqrt(count * 0.42 * 0.42 * std::sqrt(0.75) / std::numbers::pi) + 0.42);
 }
 
 TEST_CASE("streams give each robot its own cell and a path across the given number of lanes") {
