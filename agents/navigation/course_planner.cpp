@@ -55,7 +55,7 @@ constexpr double kStraight_m = 0.003, kStraight_s = 0.03 + to_seconds(DrivingCou
 constexpr double kMaxWay_s = 1800;
 
 /// The effort that searches may spend per second on average, how much the robot may save up, and how much it
-/// may owe after a search.
+/// may owe because a search has taken longer than its effort says.
 constexpr double kEffort_perS = 1'000, kMaxEffort = 10'000, kMaxDebt = 500;
 /// The effort of a search that takes a second on an idle core.
 constexpr double kEffortOfSecond = 300'000;
@@ -279,12 +279,12 @@ void CoursePlanner::plan(const Query& query, Rng& rng) {
   const std::size_t before = search_.effort();
   plan_within_effort(query, rng);
   last_effort_ = static_cast<double>(search_.effort() - before);
-  effort_ = std::max(-kMaxDebt, effort_ - last_effort_);
+  effort_ -= last_effort_;
 }
 
 void CoursePlanner::charge(Duration taken) {
   const double more = kEffortOfSecond * to_seconds(taken) - last_effort_;
-  if (more > 0) effort_ = std::max(-kMaxDebt, effort_ - more);
+  if (more > 0) effort_ = std::min(effort_, std::max(-kMaxDebt, effort_ - more));
 }
 
 void CoursePlanner::plan_within_effort(const Query& query, Rng& rng) {
