@@ -40,6 +40,8 @@ Attacker::Attacker(const AttackerSettings& settings) : impl_(std::make_unique<Im
   udp->interfaceWhiteList = {"127.0.0.1"};
   qos.transport().user_transports.push_back(udp);
   qos.wire_protocol().builtin.mutation_tries = 500;
+  // Otherwise the test's own process may abort, see common/messaging/README.md.
+  qos.wire_protocol().builtin.discovery_config.leaseDuration = fast_dds::kInfiniteDuration;
   if (settings.announced) {
     ParticipantId id;
     std::random_device random;
