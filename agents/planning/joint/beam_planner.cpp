@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -41,6 +42,9 @@ constexpr double kNearTolerance_m = 0.004;
 /// much smaller, because both slow down steadily.
 constexpr int kBrakingSamples = 4;
 
+constexpr std::size_t kSlotsPerCell = 4;
+constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;  ///< spreads neighbouring cells (Fibonacci hashing)
+
 /// The cell of the state space that contains a state; standstill is in the middle of a cell.
 std::uint64_t state_cell(const State& state, double cell_m, double cell_mps) {
   // Adding half a period keeps the value positive, so that it is rounded down.
@@ -50,6 +54,8 @@ std::uint64_t state_cell(const State& state, double cell_m, double cell_mps) {
   const Vec2 at = state.position_m / cell_m, moving = state.velocity_mps / cell_mps;
   return part(at.x()) << 48 | part(at.y()) << 32 | part(moving.x()) << 16 | part(moving.y());
 }
+
+std::uint64_t wide_state_cell(const State& state) { return state_cell(state, kWideCell_m, kWideCell_mps); }
 
 /// Unit vectors in all directions from that of the x axis on.
 const std::array<Vec2, kAccelerationDirections>& directions() {
@@ -107,6 +113,15 @@ Box area_of(const BeamQuery& query, const Field& field, double detour_m) {
 
 }  // namespace
 
+void CellSet::clear(std::size_t count) { slots_.assign(std::bit_ceil(kSlotsPerCell * (count + 1)), kEmpty); }
+
+std::size_t CellSet::slot_of(std::uint64_t cell) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = (cell * kGolden) >> 32 & mask;
+  while (slots_[slot] != cell && slots_[slot] != kEmpty) slot = (slot + 1) & mask;
+  return slot;
+}
+
 BeamPlanner::BeamPlanner(const JointProblem& problem, const BeamSettings& settings)
     : problem_(&problem), settings_(settings), field_(problem) {
   const double error_m =
@@ -129,12 +144,12 @@ bool BeamPlanner::is_clear(const Vec2& from_m, const Vec2& to_m) const {
          !problem_->world->touches(from_m, to_m, from_obstacles_m_);
 }
 
-double BeamPlanner::estimate_s(const State& state, double t_s) const {
+double BeamPlanner::estimate_s(const State& state, double t_s, const Moments& moments) const {
   const double ahead_s =
-      field_.time_to_goal_s(state.position_m + kLookAhead_s * state.velocity_mps, t_s + kLookAhead_s);
+      field_.time_to_goal_s(state.position_m + kLookAhead_s * state.velocity_mps, moments.ahead);
   if (ahead_s < TimeToGoalField::kNever_s) return t_s + kLookAhead_s + ahead_s;
   // The robot has to turn or brake.
-  return t_s + 2 * kLookAhead_s + field_.time_to_goal_s(state.position_m, t_s);
+  return t_s + 2 * kLookAhead_s + field_.time_to_goal_s(state.position_m, moments.present);
 }
 
 double BeamPlanner::separation_m(double at_start_m, std::size_t sample) const {
@@ -149,6 +164,14 @@ void BeamPlanner::set_separations(const BeamQuery& query) {
   for (const Vec2& waiting_m : query.waiting_m)
     waiting_at_start_m_.push_back((waiting_m - query.start_m).norm());
   max_deceleration_mps2_ = query.limits.deceleration_mps2;
+  goal_free_from_ = 0;
+  for (const TimedPositions& other : query.others) {
+    if (other.stays && (other.at_m.back() - query.goal_m).norm() < separation_m_)
+      goal_free_from_ = kNeverFree;
+    for (std::size_t k = other.at_m.size(); k-- > goal_free_from_;)
+      if (!are_apart(query.goal_m, query.goal_m, other.at(k), other.at(k + 1), separation_m_))
+        goal_free_from_ = k + 1;
+  }
 }
 
 BeamPlanner::PassingRange BeamPlanner::find_passing(const BeamQuery& query, const State& state,
@@ -182,11 +205,12 @@ void BeamPlanner::expand(const BeamQuery& query, std::uint32_t parent, std::size
   ++expanded_;
   const State from = nodes_[parent].state;
   const double t_s = static_cast<double>(step + 1) * kBeamStep_s;
+  const Moments moments{field_.at_time(t_s), field_.at_time(t_s + kLookAhead_s)};
   for_each_acceleration(from, query.goal_m, query.limits, [&](const Vec2& acceleration) {
     State to = state_after(from, acceleration, kBeamStep_s);
     if (to.velocity_mps.norm() < kPlannedRest_mps) to.velocity_mps.setZero();
     if (t_s + (to.position_m - query.goal_m).norm() / query.limits.speed_mps >= best_s_) return;
-    const double arrival_s = estimate_s(to, t_s) + rng.uniform(0, kNoise_s);
+    const double arrival_s = estimate_s(to, t_s, moments) + rng.uniform(0, kNoise_s);
     if (arrival_s < best_s_) candidates_.push_back({to, acceleration, parent, arrival_s});
   });
 }
@@ -227,30 +251,36 @@ void BeamPlanner::keep_best_candidates(const BeamQuery& query, std::size_t begin
   for (const Node& candidate : candidates_)
     order_.emplace_back(candidate.estimate_s, static_cast<std::uint32_t>(order_.size()));
   std::ranges::make_heap(order_, std::greater<>());
-  cells_.clear();
-  wide_cells_.clear();
+  cells_.clear(settings_.width);
+  wide_cells_.clear(settings_.width + settings_.varied);
   passing_.clear();
   passing_of_.assign(nodes_.size() - begin, std::nullopt);
   std::size_t kept = 0;
-  for (auto last = order_.end(); last != order_.begin() && kept < settings_.width + settings_.varied;
-       --last) {
-    std::ranges::pop_heap(order_.begin(), last, std::greater<>());
-    const Node& candidate = candidates_[std::prev(last)->second];
+  while (!order_.empty() && kept < settings_.width + settings_.varied) {
+    std::ranges::pop_heap(order_, std::greater<>());
+    const Node& candidate = candidates_[order_.back().second];
+    order_.pop_back();
     const bool is_full = kept >= settings_.width;
-    const std::uint64_t cell = is_full ? state_cell(candidate.state, kWideCell_m, kWideCell_mps)
-                                       : state_cell(candidate.state, kStateCell_m, kStateCell_mps);
-    const std::vector<std::uint64_t>& taken = is_full ? wide_cells_ : cells_;
-    if (std::ranges::find(taken, cell) != taken.end()) continue;
+    const std::uint64_t wide_cell = wide_state_cell(candidate.state);
+    const std::uint64_t cell = state_cell(candidate.state, kStateCell_m, kStateCell_mps);
+    if (is_full ? wide_cells_.contains(wide_cell) : cells_.contains(cell)) continue;
     // Most candidates are never looked at, so the expensive checks come last.
     std::optional<PassingRange>& passing = passing_of_[candidate.parent - begin];
     if (!passing) passing = find_passing(query, nodes_[candidate.parent].state, step);
     if (!is_possible(candidate, *passing)) continue;
-    if (!is_full) cells_.push_back(cell);
-    wide_cells_.push_back(is_full ? cell : state_cell(candidate.state, kWideCell_m, kWideCell_mps));
+    if (!is_full) cells_.insert(cell);
+    wide_cells_.insert(wide_cell);
     nodes_.push_back(candidate);
-    ++kept;
+    if (++kept == settings_.width) drop_taken();
   }
   candidates_.clear();
+}
+
+void BeamPlanner::drop_taken() {
+  std::erase_if(order_, [&](const auto& entry) {
+    return wide_cells_.contains(wide_state_cell(candidates_[entry.second].state));
+  });
+  std::ranges::make_heap(order_, std::greater<>());
 }
 
 bool BeamPlanner::is_free(const BeamQuery& query, const Trajectory& motion, std::size_t sample) const {
@@ -275,17 +305,14 @@ bool BeamPlanner::is_free(const BeamQuery& query, const Trajectory& motion, std:
     ++sample;
   }
   // The robot stays at its goal.
-  return is_clear(query.goal_m, query.goal_m) &&
-         std::ranges::all_of(query.others, [&](const TimedPositions& other) {
-           bool is_apart = true;
-           for (std::size_t k = sample; k < other.at_m.size() && is_apart; ++k)
-             is_apart = are_apart(query.goal_m, query.goal_m, other.at(k), other.at(k + 1), separation_m_);
-           return is_apart && (!other.stays || (other.at_m.back() - query.goal_m).norm() >= separation_m_);
-         });
+  return sample >= goal_free_from_ && is_clear(query.goal_m, query.goal_m);
 }
 
 void BeamPlanner::try_stop(const BeamQuery& query, std::uint32_t node, std::size_t step) {
   const State& from = nodes_[node].state;
+  const auto latest =
+      static_cast<std::size_t>(longest_stop_s(from, query.goal_m, query.limits) / kCourseSample_s);
+  if (step * kSamplesPerStep + latest + 2 < goal_free_from_) return;
   const Trajectory motion =
       fastest_stop(Time{} + static_cast<int>(step) * kBeamStep, from, query.goal_m, query.limits);
   const double arrival_s = to_seconds(motion.end() - Time{});
@@ -311,6 +338,7 @@ std::optional<SampledCourse> BeamPlanner::plan(const BeamQuery& query, std::span
   if (std::optional<SampledCourse> straight = plan_straight(query)) return straight;
   if (!problem_->field.contains(query.start_m, 0) || !is_clear(query.goal_m, query.goal_m))
     return std::nullopt;
+  if (kCourseSample_s * (static_cast<double>(goal_free_from_) - 1) >= query.latest_s) return std::nullopt;
   field_.compute(area_of(query, problem_->field, attempts.front().detour_m), query.goal_m,
                  query.limits.speed_mps, query.others);
   for (const BeamSettings& attempt : attempts) {

@@ -38,6 +38,22 @@ struct BeamQuery {
   std::size_t max_expanded = std::numeric_limits<std::size_t>::max();
 };
 
+/// A set of cells of the state space, for few cells and many questions.
+class CellSet {
+ public:
+  /// Removes all cells, and makes room for `count`.
+  void clear(std::size_t count);
+  bool contains(std::uint64_t cell) const { return slots_[slot_of(cell)] == cell; }
+  void insert(std::uint64_t cell) { slots_[slot_of(cell)] = cell; }
+
+ private:
+  static constexpr std::uint64_t kEmpty = std::numeric_limits<std::uint64_t>::max();
+  /// The place of the cell, or the empty one where it would be.
+  std::size_t slot_of(std::uint64_t cell) const;
+
+  std::vector<std::uint64_t> slots_;  // their number is a power of two
+};
+
 /// Plans the motion of one robot at full speed among robots that follow known courses: a beam search in
 /// position, velocity and time. In each step the robot holds one of a set of accelerations; the states with
 /// the earliest estimated arrivals are kept. A TimeToGoalField makes the estimates. A course ends with the
@@ -99,11 +115,17 @@ class BeamPlanner {
   /// Moves the most promising of the candidates to the nodes, at most one for each cell of the state space.
   /// `begin` is the first node of the step that has been expanded.
   void keep_best_candidates(const BeamQuery& query, std::size_t begin, std::size_t step);
+  /// Drops the candidates that are in a wide cell which is taken.
+  void drop_taken();
   /// Tries to end the course at a node; keeps the result if it arrives earlier than the best so far.
   void try_stop(const BeamQuery& query, std::uint32_t node, std::size_t step);
   bool is_clear(const Vec2& from_m, const Vec2& to_m) const;
   bool is_free(const BeamQuery& query, const Trajectory& motion, std::size_t sample) const;
-  double estimate_s(const State& state, double t_s) const;
+  /// The times at which estimates look at the field.
+  struct Moments {
+    TimeToGoalField::Moment present, ahead;
+  };
+  double estimate_s(const State& state, double t_s, const Moments& moments) const;
   SampledCourse course_to(const BeamQuery& query, std::uint32_t node) const;
 
   const JointProblem* problem_;
@@ -112,11 +134,13 @@ class BeamPlanner {
   double separation_m_ = 0, from_obstacles_m_ = 0;       // include the error of sampling
   std::vector<double> at_start_m_, waiting_at_start_m_;  // distances of the others at the start
   double max_deceleration_mps2_ = 1;
+  static constexpr std::size_t kNeverFree = std::numeric_limits<std::size_t>::max();
+  std::size_t goal_free_from_ = 0;  // sample from which on no other robot is near the goal
   std::vector<Node> nodes_, candidates_;
   std::vector<Passing> passing_;
   std::vector<std::optional<PassingRange>> passing_of_;  // indexed by node of the present step
   std::vector<std::pair<double, std::uint32_t>> order_;  // estimates and numbers of candidates
-  std::vector<std::uint64_t> cells_, wide_cells_;
+  CellSet cells_, wide_cells_;
   std::optional<Trajectory> best_stop_;
   std::uint32_t best_node_ = 0;
   double best_s_ = 0;

@@ -112,6 +112,12 @@ Trajectory motion_along(Time start, const State& from, const Turn& turn, const S
 
 }  // namespace
 
+double longest_stop_s(const State& from, const Vec2& goal_m, const MotionLimits& limits) {
+  const double speed = from.velocity_mps.norm(), braking_s = speed / limits.deceleration_mps2;
+  const Vec2 rest_m = from.position_m + braking_s / 2 * from.velocity_mps;
+  return braking_s + straight_times(0, (rest_m - goal_m).norm(), limits)->total_s();
+}
+
 Trajectory fastest_stop(Time start, const State& from, const Vec2& goal_m, const MotionLimits& limits) {
   const Vec2 way = goal_m - from.position_m;
   const double speed = from.velocity_mps.norm();

@@ -110,8 +110,19 @@ void TimeToGoalField::for_each_near(const Vec2& at_m, double distance_m, Call ca
 }
 
 void TimeToGoalField::block(const Vec2& at_m, Ms* times) const {
-  for_each_near(at_m, problem_->min_separation_m() - kSlack_m,
-                [&](std::size_t cell, double) { times[cell] = kNever; });
+  const Vec2 at = (at_m - origin_m_) / kTimeCell_m;
+  const double radius = (problem_->min_separation_m() - kSlack_m) / kTimeCell_m;
+  const auto index = [](double x, std::size_t count) {
+    return static_cast<std::size_t>(std::clamp(x, 0.0, static_cast<double>(count)));
+  };
+  const std::size_t rows_end = index(std::floor(at.y() + radius) + 1, rows_);
+  for (std::size_t row = index(std::ceil(at.y() - radius), rows_); row < rows_end; ++row) {
+    const double up = static_cast<double>(row) - at.y();
+    const double half = std::sqrt(std::max(0.0, radius * radius - up * up));
+    const std::size_t first = index(std::ceil(at.x() - half), columns_),
+                      end = index(std::floor(at.x() + half) + 1, columns_);
+    if (first < end) std::fill_n(times + row * columns_ + first, end - first, kNever);
+  }
 }
 
 void TimeToGoalField::compute(const Box& area_m, const Vec2& goal_m, double speed_mps,
@@ -203,9 +214,12 @@ void TimeToGoalField::step_back(const Ms* later, Ms* times) {
   }
 }
 
-double TimeToGoalField::time_to_goal_s(const Vec2& at_m, double t_s) const {
-  const std::size_t step = std::min(static_cast<std::size_t>(std::lround(t_s / step_s_)), last_);
-  const Ms* times = times_.data() + step * least_.size();
+TimeToGoalField::Moment TimeToGoalField::at_time(double t_s) const {
+  return Moment(std::min(static_cast<std::size_t>(std::lround(t_s / step_s_)), last_));
+}
+
+double TimeToGoalField::time_to_goal_s(const Vec2& at_m, Moment moment) const {
+  const Ms* times = times_.data() + moment.step_ * least_.size();
   const Vec2 place = (at_m - origin_m_) / kTimeCell_m;
   // A position outside the grid is blocked.
   if (!(place.x() >= 0 && place.y() >= 0)) return kNever_s;

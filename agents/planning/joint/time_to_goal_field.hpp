@@ -32,9 +32,18 @@ class TimeToGoalField {
   /// Number of cells, in all steps of time, computed so far.
   std::size_t computed_cells() const { return computed_cells_; }
 
+  /// A time, prepared for questions about many positions.
+  class Moment {
+   private:
+    friend TimeToGoalField;
+    explicit Moment(std::size_t step) : step_(step) {}
+    std::size_t step_;
+  };
+  Moment at_time(double t_s) const;
   /// The time from a position at a time to the goal; kNever_s if the robot would touch something there, or if
   /// no way leads from there to the goal within half a minute.
-  double time_to_goal_s(const Vec2& at_m, double t_s) const;
+  double time_to_goal_s(const Vec2& at_m, Moment moment) const;
+  double time_to_goal_s(const Vec2& at_m, double t_s) const { return time_to_goal_s(at_m, at_time(t_s)); }
 
  private:
   /// Times in milliseconds, small enough for fast comparisons of many cells at once.

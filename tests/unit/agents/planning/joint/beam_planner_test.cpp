@@ -178,6 +178,30 @@ TEST_CASE("an attempt ends when it has expanded as many states as it may") {
   CHECK(all > 1'000);
 }
 
+TEST_CASE("there is no search if another robot is at the goal for too long") {
+  DoorFloor floor;
+  Rng rng(1);
+  const std::vector<Vec2> resting(1, {1, 0.1});
+  // It leaves the goal after two seconds.
+  std::vector<Vec2> leaving(40, {1, 0.1});
+  for (int k = 1; k <= 10; ++k) leaving.push_back({1, 0.1 + 0.08 * k});
+  BeamPlanner planner(floor.problem);
+  const auto plan_among = [&](const std::vector<Vec2>& other_m, double latest_s) {
+    const TimedPositions other{other_m};
+    floor.query.others = {&other, 1};
+    floor.query.latest_s = latest_s;
+    return planner.plan(floor.query, rng);
+  };
+  CHECK_FALSE(plan_among(resting, 15));
+  CHECK_FALSE(plan_among(leaving, 1.9));
+  CHECK(planner.effort() == 0);
+  const auto course = plan_among(leaving, 15);
+  REQUIRE(course);
+  CHECK(course->arrival_s() > 2);
+  CHECK(course->arrival_s() < 2.6);
+  CHECK(planner.effort() > 0);
+}
+
 TEST_CASE("there is no course to or from a place outside the field") {
   DoorFloor floor;
   const ObstacleWorld nothing;

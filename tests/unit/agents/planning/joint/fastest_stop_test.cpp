@@ -33,6 +33,7 @@ TEST_CASE("the fastest stop of a moving robot obeys the limits and ends at rest 
     CHECK((motion.at_start().velocity_mps - from.velocity_mps).norm() == 0);
     CHECK((motion.rest_position_m() - goal_m).norm() < 1e-7);
     CHECK(to_seconds(motion.end() - motion.start()) <= stop_first_s(from, goal_m) + 1e-6);
+    CHECK(longest_stop_s(from, goal_m, kLimits) == Approx(stop_first_s(from, goal_m)).margin(1e-6));
   }
 }
 
