@@ -55,13 +55,13 @@ void Neighbours::on_page(const ReceivedPage& received) {
 
 void Neighbours::store(const ReceivedPage& received, Page& page) {
   page.nearby.clear();
-  if (is_far(received.bounds_m(), centre_m_, horizon_m_)) return;
+  if (remembered_.empty() && is_far(received.bounds_m(), centre_m_, horizon_m_)) return;
   received.update(page.decoded);
   const auto& entries = page.decoded->entries;
   for (std::uint32_t i = 0; i < entries.size(); ++i) {
     const DecodedLedgerPage::Entry& entry = entries[i];
-    if (entry.robot == self_ || (entry.position_m - centre_m_).squaredNorm() > horizon_m_ * horizon_m_)
-      continue;
+    const bool is_near = (entry.position_m - centre_m_).squaredNorm() <= horizon_m_ * horizon_m_;
+    if (entry.robot == self_ || !(is_near || is_remembered(entry.robot))) continue;
     if (entry.is_valid)
       page.nearby.push_back(i);
     else
@@ -112,7 +112,13 @@ std::span<const Neighbours::Stationary> Neighbours::find_stationary(Time since, 
   std::ranges::sort(stationary_, {}, [&](const Stationary& s) { return std::pair(distance2(s), s.robot); });
   if (stationary_.size() > max_count) stationary_.resize(max_count);
   std::ranges::sort(stationary_, {}, [&](const Stationary& s) { return std::pair(s.robot, distance2(s)); });
+  remembered_.clear();
+  for (const Stationary& found : stationary_) remembered_.push_back(found.robot);
   return stationary_;
+}
+
+bool Neighbours::is_remembered(RobotId robot) const {
+  return std::ranges::find(remembered_, robot) != remembered_.end();
 }
 
 bool Neighbours::is_moving(RobotId robot, Time since) const {

@@ -38,8 +38,12 @@ class Neighbours {
     const Intent* intent = nullptr;
   };
   /// The robots that have been at rest since `since` and have no later version that moves. Returns the
-  /// `max_count` nearest of these robots, sorted by robot id. Valid until the next page or call.
+  /// `max_count` nearest of these robots, sorted by robot id. Valid until the next page or call. Robots that
+  /// were found once are also found beyond the horizon, until they move: if they were forgotten there, a
+  /// robot would choose its route by them only when it is near them, and could turn around for ever.
   std::span<const Stationary> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
+  /// Whether the robot has been at rest since `since` and has no later version that moves.
+  bool is_at_rest(RobotId robot, Time since) const { return !is_moving(robot, since); }
   /// Number of versions within the horizon that could not be decoded.
   std::uint64_t invalid() const { return invalid_; }
   void count_drops(DropCounters& drops) const;
@@ -52,6 +56,7 @@ class Neighbours {
     std::vector<std::uint32_t> nearby;  // indices in `decoded` of the versions within the horizon
   };
   void store(const ReceivedPage& received, Page& page);
+  bool is_remembered(RobotId robot) const;
   /// Whether any version of the robot ends after `since`.
   bool is_moving(RobotId robot, Time since) const;
 
@@ -65,6 +70,7 @@ class Neighbours {
   RobotId self_;
   std::vector<Page> pages_;
   std::vector<Stationary> stationary_;
+  std::vector<RobotId> remembered_;  // found at rest by the last search
   std::vector<const Version*> newest_;
   std::uint64_t invalid_ = 0, late_ = 0;
 };

@@ -24,19 +24,19 @@ bool is_recent(Time t, Time now, Duration max_age, Duration max_lead) {
 
 Observations::Observations(const FloorSpec& floor, const RobotSpec& robot, const FloorRules& rules)
     : max_clock_difference_(max_clock_difference(floor.clock_bound_s)),
-      page_horizon_m_(page_horizon_m(rules)),
+      view_m_(page_horizon_m(rules)),
       own_({robot.start_m, Vec2::Zero()}, drift_bound_m(floor.tracking_bound_m)),
       neighbours_(robot.id),
       obstacles_(floor.max_opponent_speed_mps, max_clock_difference_),
       displaced_(robot.id, floor.radius_m, floor.margin_m,
                  std::max(floor.max_opponent_speed_mps, floor.limits.speed_mps), max_clock_difference_) {
-  neighbours_.set_horizon(robot.start_m, page_horizon_m_);
+  neighbours_.set_horizon(robot.start_m, view_m_);
   if (floor.laser) laser_.emplace(floor, rules);
 }
 
 void Observations::on_robot_report(const RobotReport& robot_report) {
   own_.on_robot_report(robot_report);
-  neighbours_.set_horizon(own_.estimate().position_m, page_horizon_m_);
+  neighbours_.set_horizon(own_.estimate().position_m, view_m_);
 }
 
 void Observations::on_world_state(const WorldObservations& world, Time now, bool is_robot_clock_known) {

@@ -34,6 +34,8 @@ class Observations {
   /// Precondition: the robot has a laser.
   void on_scan(const LaserScan& scan, Time now) { laser_->on_scan(scan, neighbours_, now); }
   void on_page(const ReceivedPage& page) { neighbours_.on_page(page); }
+  /// How far away neighbours are noticed from the next report on. At least page_horizon_m().
+  void set_view(double view_m) { view_m_ = view_m; }
   /// Processes a heartbeat of the coordinator in charge.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
 
@@ -62,7 +64,7 @@ class Observations {
   bool is_watched(Time now) const;
 
   Duration max_clock_difference_;  // of two clocks that both stay within the clock bound
-  double page_horizon_m_;
+  double view_m_;
   OwnReports own_;
   Neighbours neighbours_;
   ObservedObstacles obstacles_;

@@ -21,7 +21,9 @@ constexpr Duration kFirstPause{30'000'000'000}, kLongestPause{600'000'000'000};
 constexpr Duration kWaitsAfter{500'000'000};
 /// Interval between two looks of an idle robot for robots that wait.
 constexpr Duration kLookPeriod{250'000'000};
-constexpr std::size_t kMaxWaiting = 8;  ///< number of nearest robots at rest that are considered
+/// Idle robots notice robots that wait for them at this distance. They may wait where the way is wider.
+constexpr double kIdleView_m = 20;
+constexpr std::size_t kMaxOthers = 32;  ///< number of nearest robots that idle robots consider
 /// Longer trips of other robots are considered only up to the next waypoint.
 constexpr double kLongestTrip_m = 20;
 
@@ -37,9 +39,12 @@ void PassageYielding::update(Time now, const Vec2& home_m, Observations& observa
                              const Assignment& assignment, RouteToTarget& route, Rng& rng) {
   const bool is_idle = !assignment.goal() || assignment.report().progress.is_finished();
   if (std::exchange(is_idle_, is_idle) != is_idle) give_way_.restart(now);
+  observations.set_view(is_idle ? std::max(kIdleView_m, page_horizon_m(rules_)) : page_horizon_m(rules_));
   if (is_idle && std::chrono::abs(now - looked_at_) >= kLookPeriod) {
     looked_at_ = now;
-    is_waited_for_ = has_waiting_neighbour(now, observations, assignment);
+    is_waited_for_ = std::ranges::any_of(
+        observations.neighbours().newest(observations.own().estimate().position_m, kIdleView_m),
+        [&](const Version* version) { return waits(*version, now, observations, assignment); });
   }
   home_m_ = home_m;
   const bool is_paused = now < paused_until_ && paused_until_ - now <= pause_;
@@ -72,9 +77,19 @@ std::optional<Blockage> PassageYielding::blockage() const {
 std::vector<OtherRobot> PassageYielding::others_in_passages(Time now, Observations& observations,
                                                             const Assignment& assignment) const {
   std::vector<OtherRobot> others;
+  const Vec2& position_m = observations.own().estimate().position_m;
   for (const Version* version :
-       observations.neighbours().newest(observations.own().estimate().position_m, page_horizon_m(rules_)))
-    others.push_back(other_nearby(*version, now, assignment));
+       observations.neighbours().newest(position_m, is_idle_ ? kIdleView_m : page_horizon_m(rules_))) {
+    OtherRobot& other = others.emplace_back(other_nearby(*version, now, assignment));
+    if (is_near(*version, observations) || waits(*version, now, observations, assignment)) continue;
+    other.has_right_of_way = other.returns = false;
+  }
+  if (is_idle_ && others.size() > kMaxOthers) {
+    std::ranges::sort(others, {}, [&](const OtherRobot& other) {
+      return std::pair((other.position_m - position_m).squaredNorm(), other.id);
+    });
+    others.resize(kMaxOthers);
+  }
   for (const RobotId robot : give_way_.yields_to()) {
     const OtherAssignment orders = assignment.other(robot);
     const bool is_near = std::ranges::any_of(others, [=](const auto& other) { return other.id == robot; });
@@ -110,15 +125,19 @@ bool PassageYielding::wants_place_of_this_robot(const Version& version, const Ot
   return goal_m && (*goal_m - home_m_).norm() < rules_.min_separation_m();
 }
 
-bool PassageYielding::has_waiting_neighbour(Time now, Observations& observations,
-                                            const Assignment& assignment) const {
-  const auto waits = [&](const Neighbours::Stationary& other) {
-    const OtherAssignment orders = assignment.other(other.robot);
-    return orders.has_drive_order && !orders.is_held;
-  };
-  return std::ranges::any_of(observations.neighbours().find_stationary(
-                                 now - kWaitsAfter, observations.own().estimate().position_m, kMaxWaiting),
-                             waits);
+bool PassageYielding::waits(const Version& version, Time now, Observations& observations,
+                            const Assignment& assignment) const {
+  const OtherAssignment orders = assignment.other(version.robot);
+  if (!orders.has_drive_order || orders.is_held) return false;
+  // Robots farther away may wait in a queue, or for robots that will leave by themselves.
+  const bool has_no_way = version.intent && version.intent->goal_m != version.intent->target_m;
+  return (has_no_way || is_near(version, observations)) &&
+         observations.neighbours().is_at_rest(version.robot, now - kWaitsAfter);
+}
+
+bool PassageYielding::is_near(const Version& version, const Observations& observations) const {
+  const Vec2 away = version.trajectory.at_start().position_m - observations.own().estimate().position_m;
+  return away.norm() <= page_horizon_m(rules_);
 }
 
 }  // namespace sidestep

@@ -45,8 +45,11 @@ class PassageYielding {
   OtherRobot other_nearby(const Version& version, Time now, const Assignment& assignment) const;
   /// Whether the goal of another robot is where this idle robot rests, to which it would come back.
   bool wants_place_of_this_robot(const Version& version, const OtherAssignment& orders) const;
-  /// Whether a robot nearby that has an order to drive is at rest.
-  bool has_waiting_neighbour(Time now, Observations& observations, const Assignment& assignment) const;
+  /// Whether another robot that has an order to drive is at rest: nearby, or farther away without a way to
+  /// its target.
+  bool waits(const Version& version, Time now, Observations& observations,
+             const Assignment& assignment) const;
+  bool is_near(const Version& version, const Observations& observations) const;
 
   const FloorRules& rules_;
   Duration passage_period_;  // how long a robot has the right of way in a passage

@@ -144,4 +144,29 @@ TEST_CASE("the nearest robots whose versions have all ended count as stationary"
   CHECK(places[1].position_m == Vec2(1, 0));
 }
 
+TEST_CASE("a robot that was found at rest is known beyond the horizon until it moves") {
+  Neighbours neighbours(0);
+  const auto places = [&] {
+    return neighbours.find_stationary(kNow + std::chrono::seconds(1), {0, 0}, 8).size();
+  };
+  const Version far = resting_version(2, 20, {3.5, 0});
+  std::uint64_t number = 0;
+  const auto receive_at = [&](double centre_x_m, const Version& version) {
+    neighbours.set_horizon({centre_x_m, 0}, 2);
+    receive(neighbours, page_of(0, ++number, std::vector<Version>{version, far}));
+  };
+  const Version resting = resting_version(1, 10, {1, 0});
+  receive_at(0, resting);
+  CHECK(places() == 1);
+  receive_at(-2, resting);
+  CHECK(places() == 1);
+  Version leaving = resting_version(1, 11, {1, 0});
+  leaving.trajectory.append(std::chrono::seconds(9), {0, 0});
+  receive_at(-2, leaving);
+  CHECK(places() == 0);
+  // It is forgotten now, and so is not noticed when it rests again.
+  receive_at(-2, resting_version(1, 12, {1, 0}));
+  CHECK(places() == 0);
+}
+
 }  // namespace sidestep::neighbours_test
