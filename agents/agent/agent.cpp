@@ -115,7 +115,8 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
 }
 
 void Agent::plan_courses() {
-  if (!course_start_) return;
+  // The robot may have been lifted since the proposal.
+  if (!course_start_ || !negotiation_.held().is_executing()) return;
   const Version& base = negotiation_.held().base_at(*course_start_);
   planner_.plan_courses(*course_start_, base.trajectory.state_at(*course_start_), rng_);
 }

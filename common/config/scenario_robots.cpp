@@ -69,16 +69,16 @@ PlacedRobot read_robot(YamlMap& map) {
   return placed;
 }
 
-/// A group of robots around a centre, each of which swaps places with the opposite one.
-struct SwapGroup {
+/// A group of robots around a centre, each of which drives to the point opposite its start.
+struct OppositeGroup {
   int first_id = 0, count = 0;
   double spacing_m = 0;
   Vec2 centre_m{0, 0};
   int line = 0;
 };
 
-SwapGroup read_swap_group(YamlMap& map) {
-  SwapGroup group;
+OppositeGroup read_opposite_group(YamlMap& map) {
+  OppositeGroup group;
   for (const char* key : {"count", "spacing_m"}) (void)map.require(key);
   map.read("first_id", kRobotId, group.first_id);
   map.read("count", {2, static_cast<double>(kMaxRobots)}, group.count);
@@ -96,7 +96,7 @@ SwapGroup read_swap_group(YamlMap& map) {
 }
 
 /// Adds a robot that faces its goal, the point opposite its start.
-void add_to_group(const SwapGroup& group, int number, const Vec2& from_centre_m,
+void add_to_group(const OppositeGroup& group, int number, const Vec2& from_centre_m,
                   std::vector<PlacedRobot>& robots) {
   PlacedRobot placed;
   placed.robot = {static_cast<RobotId>(group.first_id + number),
@@ -110,7 +110,7 @@ void add_to_group(const SwapGroup& group, int number, const Vec2& from_centre_m,
 
 /// Places robots on a circle, given the chord between neighbours.
 void read_circle(YamlMap& circle, std::vector<PlacedRobot>& robots) {
-  const SwapGroup group = read_swap_group(circle);
+  const OppositeGroup group = read_opposite_group(circle);
   const double radius_m = group.spacing_m / (2 * std::sin(std::numbers::pi / group.count));
   for (int i = 0; i < group.count; ++i)
     add_to_group(group, i, rotated(Vec2(radius_m, 0), 2 * std::numbers::pi * i / group.count), robots);
@@ -119,7 +119,7 @@ void read_circle(YamlMap& circle, std::vector<PlacedRobot>& robots) {
 /// Places robots on those points of a triangular lattice that are nearest to the middle of one of its
 /// triangles, so that no robot starts at its goal.
 void read_disc(YamlMap& disc, std::vector<PlacedRobot>& robots) {
-  const SwapGroup group = read_swap_group(disc);
+  const OppositeGroup group = read_opposite_group(disc);
   const int reach = static_cast<int>(std::ceil(std::sqrt(group.count))) + 2;
   const Vec2 middle(0.5, 0.5 / std::numbers::sqrt3);
   std::vector<Vec2> points;  // in units of the spacing

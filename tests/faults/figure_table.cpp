@@ -11,27 +11,33 @@
 
 namespace sidestep {
 
-FigureTable::FigureTable(const std::string& title, Judged judged) : title_(title), judged_(judged) {
+namespace {
+
+constexpr int kDecisive = 2;  // runs that agree
+
+}  // namespace
+
+FigureTable::FigureTable(const std::string& title, Rule rule) : title_(title), rule_(rule) {
   print_to(stdout, "{}\n", title_);
 }
 
 bool FigureTable::is_open(const std::string& name) const {
-  constexpr int kMaxRuns = 3;
   const auto row = std::ranges::find(rows_, name, &Row::name);
-  return judged_ == Judged::kMajority && row != rows_.end() && row->missed > 0 && row->runs < kMaxRuns;
+  return rule_ == Rule::kTwoOfThree && row != rows_.end() && row->missed > 0 && !row->has_failed &&
+         row->missed < kDecisive && row->runs - row->missed < kDecisive;
 }
 
 void FigureTable::add(const MeasuredRun& run) {
   auto row = std::ranges::find(rows_, run.row, &Row::name);
   if (row == rows_.end()) row = rows_.insert(rows_.end(), Row{.name = run.row, .latest_miss = {}});
   ++row->runs;
-  row->is_unsafe |= run.is_unsafe;
   if (!run.misses.empty()) {
     ++row->missed;
+    row->has_failed |= !run.may_be_chance;
     row->latest_miss = run.misses.front();
   }
-  print_to(stdout, "{:<44} {:<8} {}{}{}\n", run.row, run.misses.empty() ? "met" : "MISSED", run.figures,
-           run.misses.empty() ? "" : "; missed: ", fmt::join(run.misses, "; "));
+  print_to(stdout, "{:<44} {:<8} {}{}{}\n{}", run.row, run.misses.empty() ? "met" : "MISSED", run.figures,
+           run.misses.empty() ? "" : "; missed: ", fmt::join(run.misses, "; "), run.details);
 }
 
 void FigureTable::print() const {
@@ -42,10 +48,8 @@ void FigureTable::print() const {
 
 int FigureTable::missed() const {
   int sum = 0;
-  for (const Row& row : rows_) {
-    const bool is_row_missed = row.is_unsafe || 2 * row.missed > row.runs;
-    sum += judged_ == Judged::kEachRun ? row.missed : static_cast<int>(is_row_missed);
-  }
+  for (const Row& row : rows_)
+    sum += rule_ == Rule::kEachRun ? row.missed : static_cast<int>(row.has_failed || row.missed >= kDecisive);
   return sum;
 }
 

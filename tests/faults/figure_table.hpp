@@ -11,36 +11,37 @@ struct MeasuredRun {
   std::string row;                  ///< the row of the table to which it belongs
   std::string figures;              ///< what was measured
   std::vector<std::string> misses;  ///< figures that were missed; empty: none
-  bool is_unsafe = false;           ///< whether robots touched or the audit found a violation
+  std::string details{};            ///< further lines about the misses, each with its end of line
+  /// Whether a pause of the machine may be the reason: only then does another run count instead.
+  bool may_be_chance = false;
 };
 
 /// Prints a line for each run of a measurement at once, and a table at the end.
 class FigureTable {
  public:
-  /// What counts as missed: each run, or most of a row's runs.
-  enum class Judged { kEachRun, kMajority };
+  /// What counts as missed: each run, or rows of which two runs miss a figure, or one that cannot be chance.
+  enum class Rule { kEachRun, kTwoOfThree };
 
-  explicit FigureTable(const std::string& title, Judged judged = Judged::kEachRun);
+  explicit FigureTable(const std::string& title, Rule rule = Rule::kEachRun);
 
-  /// Whether the row is to be measured again: by majority, three times if the first run misses a figure.
+  /// Whether the row is to be measured again: by the rule of two of three, until two runs agree.
   bool is_open(const std::string& row) const;
 
   void add(const MeasuredRun& run);
   /// Prints runs and misses of each row, in the order in which rows were added.
   void print() const;
-  /// Number of runs that missed a figure; by majority, of rows that missed in more than half of their runs,
-  /// or were unsafe in one.
+  /// Number of runs that missed a figure, or of rows that failed by the rule of two of three.
   int missed() const;
 
  private:
   struct Row {
     std::string name;
     int runs = 0, missed = 0;
-    bool is_unsafe = false;
+    bool has_failed = false;  // in a way that cannot be chance
     std::string latest_miss;
   };
   std::string title_;
-  Judged judged_;
+  Rule rule_;
   std::vector<Row> rows_;
 };
 

@@ -14,7 +14,8 @@ namespace sidestep {
 [[nodiscard]] Trajectory fastest_stop(Time start, const State& from, const Vec2& goal_m,
                                       const MotionLimits& limits);
 
-/// A bound on the duration of fastest_stop(), quickly computed: the robot stops, and then drives straight.
+/// Upper bound of the duration of fastest_stop(), quickly computed: the robot stops, and then drives
+/// straight.
 [[nodiscard]] double longest_stop_s(const State& from, const Vec2& goal_m, const MotionLimits& limits);
 
 }  // namespace sidestep

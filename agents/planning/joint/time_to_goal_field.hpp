@@ -32,7 +32,7 @@ class TimeToGoalField {
   /// Number of cells, in all steps of time, computed so far.
   std::size_t computed_cells() const { return computed_cells_; }
 
-  /// A time, prepared for questions about many positions.
+  /// A time step of the field, looked up once for many positions.
   class Moment {
    private:
     friend TimeToGoalField;
