@@ -113,6 +113,18 @@ TEST_CASE("an agent plans towards its goal while vision observes its robot") {
   CHECK(d.plans(0.95));
 }
 
+TEST_CASE("a robot that is lifted after its plan has no version from which courses could begin") {
+  DrivenAgent d;
+  d.observe(0, 0.6, 0.61);
+  REQUIRE(d.plans(0.62));
+  RobotReport lifted = resting_at({0, 0}, 0.63);
+  lifted.is_lifted = true;
+  d.agent.on_robot_report(lifted);
+  d.agent.plan_courses();
+  d.observe(0, 0.64, 0.65);
+  CHECK_FALSE(d.plans(0.66));
+}
+
 TEST_CASE("a moving obstacle's reach grows with the robot's possible lag") {
   const Duration max_lag = std::chrono::milliseconds(60);
   DrivenAgent d;
