@@ -19,7 +19,7 @@ class Neighbours {
   explicit Neighbours(RobotId self) : self_(self) {}
 
   /// Filters pages that arrive from now on: versions that start farther than `horizon_m` from `centre_m` are
-  /// dropped.
+  /// dropped, except those of robots that find_stationary() has returned.
   void set_horizon(const Vec2& centre_m, double horizon_m);
   /// Stores a page of the ledger, unless a newer message with that page is already stored. Decodes its
   /// versions only if the page is within the horizon.
@@ -42,7 +42,8 @@ class Neighbours {
   /// were found once are also found beyond the horizon, until they move: if they were forgotten there, a
   /// robot would choose its route by them only when it is near them, and could turn around for ever.
   std::span<const Stationary> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
-  /// Whether the robot has been at rest since `since` and has no later version that moves.
+  /// Whether a robot that newest() has returned has been at rest since `since` and has no later version that
+  /// moves.
   bool is_at_rest(RobotId robot, Time since) const { return !is_moving(robot, since); }
   /// Number of versions within the horizon that could not be decoded.
   std::uint64_t invalid() const { return invalid_; }

@@ -39,11 +39,11 @@ void PassageYielding::update(Time now, const Vec2& home_m, Observations& observa
                              const Assignment& assignment, RouteToTarget& route, Rng& rng) {
   const bool is_idle = !assignment.goal() || assignment.report().progress.is_finished();
   if (std::exchange(is_idle_, is_idle) != is_idle) give_way_.restart(now);
-  observations.set_view(is_idle ? std::max(kIdleView_m, page_horizon_m(rules_)) : page_horizon_m(rules_));
+  observations.set_view(view_m());
   if (is_idle && std::chrono::abs(now - looked_at_) >= kLookPeriod) {
     looked_at_ = now;
     is_waited_for_ = std::ranges::any_of(
-        observations.neighbours().newest(observations.own().estimate().position_m, kIdleView_m),
+        observations.neighbours().newest(observations.own().estimate().position_m, view_m()),
         [&](const Version* version) { return waits(*version, now, observations, assignment); });
   }
   home_m_ = home_m;
@@ -78,8 +78,7 @@ std::vector<OtherRobot> PassageYielding::others_in_passages(Time now, Observatio
                                                             const Assignment& assignment) const {
   std::vector<OtherRobot> others;
   const Vec2& position_m = observations.own().estimate().position_m;
-  for (const Version* version :
-       observations.neighbours().newest(position_m, is_idle_ ? kIdleView_m : page_horizon_m(rules_))) {
+  for (const Version* version : observations.neighbours().newest(position_m, view_m())) {
     OtherRobot& other = others.emplace_back(other_nearby(*version, now, assignment));
     if (is_near(*version, observations) || waits(*version, now, observations, assignment)) continue;
     other.has_right_of_way = other.returns = false;
@@ -127,12 +126,16 @@ bool PassageYielding::wants_place_of_this_robot(const Version& version, const Ot
 
 bool PassageYielding::waits(const Version& version, Time now, Observations& observations,
                             const Assignment& assignment) const {
-  const OtherAssignment orders = assignment.other(version.robot);
-  if (!orders.has_drive_order || orders.is_held) return false;
   // Robots farther away may wait in a queue, or for robots that will leave by themselves.
   const bool has_no_way = version.intent && version.intent->goal_m != version.intent->target_m;
-  return (has_no_way || is_near(version, observations)) &&
-         observations.neighbours().is_at_rest(version.robot, now - kWaitsAfter);
+  if (!has_no_way && !is_near(version, observations)) return false;
+  if (!observations.neighbours().is_at_rest(version.robot, now - kWaitsAfter)) return false;
+  const OtherAssignment orders = assignment.other(version.robot);  // costs most
+  return orders.has_drive_order && !orders.is_held;
+}
+
+double PassageYielding::view_m() const {
+  return is_idle_ ? std::max(kIdleView_m, page_horizon_m(rules_)) : page_horizon_m(rules_);
 }
 
 bool PassageYielding::is_near(const Version& version, const Observations& observations) const {

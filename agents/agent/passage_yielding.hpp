@@ -49,7 +49,10 @@ class PassageYielding {
   /// its target.
   bool waits(const Version& version, Time now, Observations& observations,
              const Assignment& assignment) const;
+  /// Whether a robot is within page_horizon_m().
   bool is_near(const Version& version, const Observations& observations) const;
+  /// How far away the robot notices others.
+  double view_m() const;
 
   const FloorRules& rules_;
   Duration passage_period_;  // how long a robot has the right of way in a passage
