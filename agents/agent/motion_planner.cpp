@@ -131,7 +131,9 @@ std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
   Intent intent = course ? intent_of(*course, query.start)
                          : intents_.choose({at_start, query.start, *route, hold_bounds(query.lead).max},
                                            route_, query.observations.neighbours());
-  intent.target_m = passage_.is_idle() ? home_m(query) : target;
+  intent.target_m = home_m(query);
+  // Robots in the way to the place have to know where it is.
+  if (passage_.is_idle() && passage_.place_m()) intent.goal_m = *passage_.place_m();
   return follow_intent(query, intent, at_start, *route, course);
 }
 
@@ -178,7 +180,15 @@ std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& t
     blockage_.on_blocked(*other, query.now);
   passage_.on_route(*route);
   const bool is_as_near_as_possible = !route->reaches_goal && will_rest_at(query.base, route->end_m);
-  return is_as_near_as_possible ? std::nullopt : route;
+  return is_as_near_as_possible && is_told(query) ? std::nullopt : route;
+}
+
+bool MotionPlanner::is_told(const Query& query) const {
+  constexpr double kSame_m = 1e-3;
+  const std::optional<Intent>& intent = query.base.intent;
+  if (!intent || (intent->target_m - home_m(query)).norm() >= kSame_m) return false;
+  const std::optional<Vec2> place = passage_.is_idle() ? passage_.place_m() : std::nullopt;
+  return !place || (intent->goal_m - *place).norm() < kSame_m;
 }
 
 void MotionPlanner::update_blockage(const Route& route, Time now) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "agents/agent/planning_distances.hpp"
@@ -19,11 +20,19 @@ constexpr double kPassageDistance_m = 40, kPassageExtra_s = 10;
 constexpr Duration kFirstPause{30'000'000'000}, kLongestPause{600'000'000'000};
 /// A robot at rest for longer than this may be waiting.
 constexpr Duration kWaitsAfter{500'000'000};
+/// So may one that has stayed near a place for this long: robots that push against each other are never at
+/// rest.
+constexpr Duration kTremblesFor{2'000'000'000};
+constexpr double kStays_m = 0.1;  ///< distance from that place
 /// Interval between two looks of an idle robot for robots that wait.
 constexpr Duration kLookPeriod{250'000'000};
 /// Idle robots notice robots that wait for them at this distance. They may wait where the way is wider.
 constexpr double kIdleView_m = 20;
-constexpr std::size_t kMaxOthers = 32;  ///< number of nearest robots that idle robots consider
+/// Number of robots that idle robots consider: first those that wait, then the nearest.
+constexpr std::size_t kMaxOthers = 32;
+/// A robot without an order that heads for a place this far away, which is not its own, makes room for
+/// others.
+constexpr double kLeaves_m = 0.1;
 /// Longer trips of other robots are considered only up to the next waypoint.
 constexpr double kLongestTrip_m = 20;
 
@@ -42,13 +51,11 @@ void PassageYielding::update(Time now, const Vec2& home_m, Observations& observa
   observations.set_view(view_m());
   if (is_idle && std::chrono::abs(now - looked_at_) >= kLookPeriod) {
     looked_at_ = now;
-    is_waited_for_ = std::ranges::any_of(
-        observations.neighbours().newest(observations.own().estimate().position_m, view_m()),
-        [&](const Version* version) { return waits(*version, now, observations, assignment); });
+    find_waiting(now, observations, assignment);
   }
   home_m_ = home_m;
   const bool is_paused = now < paused_until_ && paused_until_ - now <= pause_;
-  if (is_idle && !give_way_.place_m() && (!is_waited_for_ || is_paused)) return give_way_.restart(now);
+  if (is_idle && !give_way_.place_m() && (waiting_.empty() || is_paused)) return give_way_.restart(now);
   const double remaining_m =
       !is_idle && route.has_route() ? remaining_to_goal_m_ : std::numeric_limits<double>::infinity();
   if (!give_way_.track_progress(now, remaining_m)) return;
@@ -60,7 +67,8 @@ void PassageYielding::update(Time now, const Vec2& home_m, Observations& observa
     return;
   }
   give_way_.begin_search(now, observations.own().estimate().position_m,
-                         others_in_passages(now, observations, assignment), route.obstacles().fixed_world());
+                         others_in_passages(now, observations, assignment), route.obstacles().fixed_world(),
+                         is_idle ? std::optional(home_m) : std::nullopt);
 }
 
 void PassageYielding::on_route(const Route& route) {
@@ -80,12 +88,13 @@ std::vector<OtherRobot> PassageYielding::others_in_passages(Time now, Observatio
   const Vec2& position_m = observations.own().estimate().position_m;
   for (const Version* version : observations.neighbours().newest(position_m, view_m())) {
     OtherRobot& other = others.emplace_back(other_nearby(*version, now, assignment));
-    if (is_near(*version, observations) || waits(*version, now, observations, assignment)) continue;
-    other.has_right_of_way = other.returns = false;
+    other.waits = is_idle_ && waits(version->robot);
+    other.rests = other.waits || observations.neighbours().is_at_rest(version->robot, now - kWaitsAfter);
+    if (!is_near(*version, observations) && !other.waits) other.has_right_of_way = other.returns = false;
   }
   if (is_idle_ && others.size() > kMaxOthers) {
     std::ranges::sort(others, {}, [&](const OtherRobot& other) {
-      return std::pair((other.position_m - position_m).squaredNorm(), other.id);
+      return std::tuple(!other.waits, (other.position_m - position_m).squaredNorm(), other.id);
     });
     others.resize(kMaxOthers);
   }
@@ -106,32 +115,58 @@ OtherRobot PassageYielding::other_nearby(const Version& version, Time now,
   if (version.intent) other.goals_m = {version.intent->goal_m, version.intent->target_m};
   // The intent may be older than the order.
   if (is_idle_ && orders.goal_m) other.goals_m[1] = orders.goal_m;
+  other.end_m = other.goals_m[1];
   // A route across a large floor would take too long to plan.
   for (std::optional<Vec2>& goal : other.goals_m)
     if (goal && (*goal - other.position_m).norm() > kLongestTrip_m)
       goal = version.intent ? std::optional(version.intent->waypoint_m) : std::nullopt;
-  other.returns = is_idle_ && !orders.has_drive_order;
-  other.has_right_of_way =
-      orders.has_drive_order &&
-      (is_idle_ ? !wants_place_of_this_robot(version, orders)
-                : assignment.yields_to({version.robot, orders.number}, now, passage_period_));
+  if (!orders.has_drive_order) {
+    const bool leaves = is_leaving(version);
+    if (leaves || !is_idle_) other.goals_m[1].reset();
+    if (leaves) other.end_m.reset();  // it goes out of the way again later
+    const bool waits_to_return = is_idle_ && has_no_way(version) && !wants_place_of_this_robot(version);
+    other.has_right_of_way = leaves || waits_to_return;
+    other.returns = is_idle_ && !other.has_right_of_way;
+  } else if (is_idle_) {
+    other.has_right_of_way = true;
+  } else {
+    other.has_right_of_way = assignment.yields_to({version.robot, orders.number}, now, passage_period_);
+  }
   return other;
 }
 
-bool PassageYielding::wants_place_of_this_robot(const Version& version, const OtherAssignment& orders) const {
-  std::optional<Vec2> goal_m = orders.goal_m;
-  if (!goal_m && version.intent) goal_m = version.intent->target_m;
-  return goal_m && (*goal_m - home_m_).norm() < rules_.min_separation_m();
+bool PassageYielding::has_no_way(const Version& version) {
+  return version.intent && version.intent->goal_m != version.intent->target_m;
 }
 
-bool PassageYielding::waits(const Version& version, Time now, Observations& observations,
-                            const Assignment& assignment) const {
-  // Robots farther away may wait in a queue, or for robots that will leave by themselves.
-  const bool has_no_way = version.intent && version.intent->goal_m != version.intent->target_m;
-  if (!has_no_way && !is_near(version, observations)) return false;
-  if (!observations.neighbours().is_at_rest(version.robot, now - kWaitsAfter)) return false;
-  const OtherAssignment orders = assignment.other(version.robot);  // costs most
-  return orders.has_drive_order && !orders.is_held;
+bool PassageYielding::is_leaving(const Version& version) {
+  return has_no_way(version) &&
+         (version.intent->goal_m - version.trajectory.rest_position_m()).norm() >= kLeaves_m;
+}
+
+bool PassageYielding::wants_place_of_this_robot(const Version& version) const {
+  return version.intent && (version.intent->target_m - home_m_).norm() < rules_.min_separation_m();
+}
+
+void PassageYielding::find_waiting(Time now, Observations& observations, const Assignment& assignment) {
+  const std::vector<Stay> before = std::exchange(stays_, {});
+  waiting_.clear();
+  for (const Version* version :
+       observations.neighbours().newest(observations.own().estimate().position_m, view_m())) {
+    // Others may wait in a queue, or for robots that will leave by themselves.
+    if (!has_no_way(*version) && !is_near(*version, observations)) continue;
+    Stay stay{version->robot, version->trajectory.rest_position_m(), now};
+    const auto last = std::ranges::find(before, stay.robot, &Stay::robot);
+    if (last != before.end() && last->since <= now && (last->place_m - stay.place_m).norm() < kStays_m)
+      stay = *last;
+    stays_.push_back(stay);
+    if (now - stay.since < kTremblesFor &&
+        !observations.neighbours().is_at_rest(stay.robot, now - kWaitsAfter))
+      continue;
+    const OtherAssignment orders = assignment.other(stay.robot);  // costs most
+    if (!orders.is_held && (orders.has_drive_order || (has_no_way(*version) && !is_leaving(*version))))
+      waiting_.push_back(stay.robot);
+  }
 }
 
 double PassageYielding::view_m() const {

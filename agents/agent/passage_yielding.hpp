@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -43,12 +44,16 @@ class PassageYielding {
   std::vector<OtherRobot> others_in_passages(Time now, Observations& observations,
                                              const Assignment& assignment) const;
   OtherRobot other_nearby(const Version& version, Time now, const Assignment& assignment) const;
-  /// Whether the goal of another robot is where this idle robot rests, to which it would come back.
-  bool wants_place_of_this_robot(const Version& version, const OtherAssignment& orders) const;
-  /// Whether another robot that has an order to drive is at rest: nearby, or farther away without a way to
-  /// its target.
-  bool waits(const Version& version, Time now, Observations& observations,
-             const Assignment& assignment) const;
+  /// Whether a robot knows no way to its target.
+  static bool has_no_way(const Version& version);
+  /// Whether a robot without an order makes room for others.
+  static bool is_leaving(const Version& version);
+  /// Whether another robot without an order wants to come back to where this idle robot rests.
+  bool wants_place_of_this_robot(const Version& version) const;
+  /// Finds the robots that wait: they have an order to drive, or have no way back to their places, and stay
+  /// where they are.
+  void find_waiting(Time now, Observations& observations, const Assignment& assignment);
+  bool waits(RobotId robot) const { return std::ranges::find(waiting_, robot) != waiting_.end(); }
   /// Whether a robot is within page_horizon_m().
   bool is_near(const Version& version, const Observations& observations) const;
   /// How far away the robot notices others.
@@ -57,12 +62,20 @@ class PassageYielding {
   const FloorRules& rules_;
   Duration passage_period_;  // how long a robot has the right of way in a passage
   GiveWay give_way_;
-  bool is_idle_ = false, is_waited_for_ = false;
+  bool is_idle_ = false;
   Vec2 home_m_{0, 0};
   // An idle robot that stepped aside in vain does not do so again before this time.
   Time paused_until_{};
   Duration pause_{};
-  Time looked_at_{};  // when is_waited_for_ was determined
+  /// A robot that may be waiting, and since when it has been near a place.
+  struct Stay {
+    RobotId robot;
+    Vec2 place_m;
+    Time since;
+  };
+  std::vector<Stay> stays_;
+  std::vector<RobotId> waiting_;
+  Time looked_at_{};  // when waiting_ was determined
   // Remaining length of the last route; infinite if it does not lead to the goal.
   double remaining_to_goal_m_ = 0;
 };

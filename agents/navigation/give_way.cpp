@@ -11,6 +11,8 @@ namespace {
 constexpr Duration kStuckAfter{1'500'000'000};
 /// Progress means coming this much nearer to the goal than ever before.
 constexpr double kProgress_m = 0.1;
+/// Robots nearer to their goals have no trip before them.
+constexpr double kShortestTrip_m = 0.005;
 /// Interval between two searches, and between two checks whether the way is free.
 constexpr Duration kRetryAfter{500'000'000};
 /// A place is given up if the robot comes no nearer to it for this long.
@@ -33,11 +35,14 @@ void GiveWay::restart(Time now) {
   progress_at_ = now;
   shortest_m_ = kInfinity_m;
   way_.clear();
+  is_replacing_ = false;
   yields_to_.clear();
   trips_.clear();
   unreachable_.clear();
   search_.cancel();
   range_m_ = kFirstRange_m;
+  passes_waiting_ = false;
+  is_to_return_ = true;
 }
 
 std::optional<std::pair<RobotId, Vec2>> GiveWay::waits_for() const {
@@ -62,23 +67,31 @@ bool GiveWay::track_progress(Time now, double remaining_m) {
 }
 
 void GiveWay::begin_search(Time now, const Vec2& position_m, std::span<const OtherRobot> others,
-                           ObstacleWorld fixed) {
+                           ObstacleWorld fixed, const std::optional<Vec2>& home_m) {
   checked_at_ = now;
   searched_.clear();
-  if (!way_.empty()) check_place(now, position_m, others);
+  has_waiting_ = std::ranges::any_of(others, &OtherRobot::waits);
+  if (!way_.empty() && !is_replacing_) check_place(now, position_m, others);
   GiveWayQuery query;
-  query.position_m = position_m;
-  query.way = way_;
+  query.position_m = searched_from_m_ = position_m;
+  if (!is_replacing_) query.way = way_;
+  query.left_m = left_m_;
   query.range_m = range_m_;
   query.unreachable_m = unreachable_;
+  if (is_to_return_) query.home_m = home_m;
+  comes_back_ = home_m.has_value();
   for (const OtherRobot& other : others) {
     if (other.is_near && other.is_held) fixed.add(search_.disc_at(other.position_m));
     if (other.is_near) {
       query.others_m.push_back(other.position_m);
+      if (other.waits && passes_waiting_) query.passable_m.push_back(other.position_m);
       remember_trips(other);
     }
     const bool is_passing = std::ranges::find(yields_to_, other.id) != yields_to_.end();
-    if (other.has_right_of_way) searched_.push_back(other.id);
+    if (other.has_right_of_way) {
+      searched_.push_back(other.id);
+      if (other.end_m) query.ends_m.push_back(*other.end_m);
+    }
     if (!other.has_right_of_way && !is_passing && !other.returns) continue;
     auto& trips = other.returns ? query.returns : query.trips;
     const auto [first, last] = trips_.equal_range(other.id);
@@ -90,7 +103,7 @@ void GiveWay::begin_search(Time now, const Vec2& position_m, std::span<const Oth
 void GiveWay::check_place(Time now, const Vec2& position_m, std::span<const OtherRobot> others) {
   const Vec2 place = way_.back();
   const bool is_covered = std::ranges::any_of(others, [&](const OtherRobot& other) {
-    return other.is_near && (other.position_m - place).norm() < min_separation_m_;
+    return other.is_near && other.rests && (other.position_m - place).norm() < min_separation_m_;
   });
   const double distance_m = (position_m - place).norm();
   if (distance_m < nearest_m_ - kProgress_m / 2 || distance_m < kProgress_m) {
@@ -99,13 +112,13 @@ void GiveWay::check_place(Time now, const Vec2& position_m, std::span<const Othe
   }
   const bool is_unreachable = now - nearer_at_ >= kUnreachableAfter;
   if (is_unreachable) unreachable_.push_back(place);
-  if (is_covered || is_unreachable) way_.clear();
+  is_replacing_ = is_covered || is_unreachable;
 }
 
 void GiveWay::remember_trips(const OtherRobot& other) {
   trips_.erase(other.id);
   for (const std::optional<Vec2>& goal : other.goals_m)
-    if (goal && (*goal - other.position_m).norm() >= kProgress_m)
+    if (goal && (*goal - other.position_m).norm() >= kShortestTrip_m)
       trips_.emplace(other.id, Trip(other.position_m, *goal));
 }
 
@@ -113,25 +126,46 @@ void GiveWay::search(Time now, Rng& rng) {
   has_given_up_ = false;
   search_.step(rng);
   if (search_.is_active()) return;
-  if (!way_.empty()) {
-    has_given_up_ = search_.is_in_the_way() && now - began_at_ >= settings_.give_up_after;
-    if (!search_.is_in_the_way() || has_given_up_) restart(now);
-    return;
+  if (!way_.empty() && !is_replacing_) return check_way(now);
+  if (search_.is_in_the_way() && search_.way().empty()) {
+    has_given_up_ = is_replacing_ && now - began_at_ >= settings_.give_up_after;
+    return has_given_up_ ? restart(now) : widen_search();
   }
-  if (!search_.is_in_the_way()) {
-    range_m_ = kFirstRange_m;
+  range_m_ = kFirstRange_m;
+  passes_waiting_ = false;
+  is_to_return_ = true;
+  if (search_.is_in_the_way()) {
+    if (!is_replacing_) left_m_ = search_.way().front();
+    way_ = search_.way();
+    began_at_ = nearer_at_ = now;
+    nearest_m_ = kInfinity_m;
+    yields_to_ = searched_;
+  } else if (is_replacing_) {
+    way_ = {searched_from_m_};  // it is in nobody's way here
+    nearer_at_ = now;
+  } else {
     shortest_m_ = remaining_m_;
     yields_to_.clear();
     unreachable_.clear();
-    return;
   }
-  way_ = search_.way();
-  began_at_ = nearer_at_ = now;
-  nearest_m_ = kInfinity_m;
-  if (way_.empty())
+  is_replacing_ = false;
+}
+
+void GiveWay::check_way(Time now) {
+  has_given_up_ = search_.is_in_the_way() && now - began_at_ >= settings_.give_up_after;
+  if (!search_.is_in_the_way() || has_given_up_) return restart(now);
+  // The others have moved, and may need this place now.
+  is_replacing_ = search_.is_place_on_route() && nearest_m_ < kProgress_m;
+}
+
+void GiveWay::widen_search() {
+  passes_waiting_ = has_waiting_ && !passes_waiting_;
+  if (passes_waiting_) return;
+  if (range_m_ < kLongestRange_m) {
     range_m_ = std::min(2 * range_m_, kLongestRange_m);
-  else
-    yields_to_ = searched_;
+  } else if (comes_back_ && std::exchange(is_to_return_, false)) {
+    range_m_ = kFirstRange_m;
+  }
 }
 
 }  // namespace sidestep

@@ -26,14 +26,19 @@ struct OtherRobot {
   Vec2 position_m{0, 0};
   std::array<std::optional<Vec2>, 2> goals_m{};
   bool has_right_of_way = false;
-  bool is_held = false;  ///< it stays where it is
-  bool returns = false;  ///< it has no order to drive, and comes back to where it was
+  bool is_held = false;         ///< it stays where it is
+  bool returns = false;         ///< it has no order to drive, and comes back to where it was
+  bool rests = false;           ///< it has been at rest for a moment
+  bool waits = false;           ///< it rests, and leaves its place for a robot that has to get out
+  std::optional<Vec2> end_m{};  ///< where it will rest; nullopt if it is going out of the way
 };
 
 /// Makes a robot back out of a passage in which robots cannot pass each other. This applies to a robot that
 /// makes no progress and blocks the route of a robot that has the right of way and no way around it. The
 /// blocking robot drives to the nearest reachable place off the routes of all robots with the right of way,
-/// for example a bay, and stays there until they have passed. Safety does not depend on it.
+/// for example a bay, and stays there until they have passed. If it reaches no such place because robots that
+/// wait stand in the way, it chooses one behind them. A robot that has to come back prefers places from which
+/// the others will not lock it out. Safety does not depend on it.
 class GiveWay {
  public:
   explicit GiveWay(const GiveWayFloor& floor, const GiveWaySettings& settings = {});
@@ -46,9 +51,9 @@ class GiveWay {
   /// returns true.
   bool is_searching() const { return search_.is_active(); }
   /// Starts a search. `others`: all robots nearby, and the robots in yields_to() that are still under way.
-  /// `fixed`: all obstacles except robots.
-  void begin_search(Time now, const Vec2& position_m, std::span<const OtherRobot> others,
-                    ObstacleWorld fixed);
+  /// `fixed`: all obstacles except robots. `home_m`: where the robot comes back to; nullopt: it does not.
+  void begin_search(Time now, const Vec2& position_m, std::span<const OtherRobot> others, ObstacleWorld fixed,
+                    const std::optional<Vec2>& home_m = std::nullopt);
   /// Performs one step of the search; the last step decides whether to give way. Precondition:
   /// is_searching().
   void search(Time now, Rng& rng);
@@ -68,9 +73,12 @@ class GiveWay {
  private:
   using Trip = std::pair<Vec2, Vec2>;  // a start and a destination
   static constexpr double kInfinity_m = std::numeric_limits<double>::infinity();
-  /// Gives up the place if another robot covers it or if the robot comes no nearer to it.
+  /// Looks for another place if a robot covers this one or if the robot comes no nearer to it.
   void check_place(Time now, const Vec2& position_m, std::span<const OtherRobot> others);
   void remember_trips(const OtherRobot& other);
+  /// Makes the next search consider more places.
+  void widen_search();
+  void check_way(Time now);
 
   GiveWaySettings settings_;
   GiveWaySearch search_;
@@ -87,7 +95,14 @@ class GiveWay {
   double nearest_m_ = kInfinity_m;      // smallest distance to the place so far
   Time nearer_at_{};
   bool has_given_up_ = false;
-  std::vector<Vec2> way_;  // from the place that the robot left to the place where it gives way
+  bool has_waiting_ = false;     // whether others wait
+  bool passes_waiting_ = false;  // whether the search ignores robots that wait
+  bool comes_back_ = false;      // whether the robot has to come back
+  bool is_to_return_ = true;     // whether the search considers only places with a way back
+  std::vector<Vec2> way_;        // to the place where the robot gives way; empty: it does not give way
+  bool is_replacing_ = false;    // whether the robot needs another place than that, and is looking for it
+  Vec2 searched_from_m_{0, 0};   // where the robot was when the search began
+  Vec2 left_m_{0, 0};            // where the robot was when it began to give way
 };
 
 }  // namespace sidestep

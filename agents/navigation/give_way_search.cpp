@@ -9,6 +9,9 @@ namespace {
 
 /// Distance from other robots' routes beyond the minimum separation.
 constexpr double kRouteClearance_m = 0.02;
+/// Robots are never exactly where they rest: a gap that is wider than necessary by less than this counts as
+/// closed.
+constexpr double kSpare_m = 0.005;
 constexpr std::size_t kMaxPlans = 12;  ///< maximum number of paths to places that are planned in one search
 constexpr std::size_t kMaxPathSamples = 5000;
 
@@ -22,7 +25,7 @@ bool is_on_route(const std::vector<Vec2>& route, const std::vector<Vec2>& way, d
   return false;
 }
 
-bool is_place_on_route(const std::vector<Vec2>& route, const Vec2& place, double separation_m) {
+bool is_on_line(const std::vector<Vec2>& route, const Vec2& place, double separation_m) {
   for (std::size_t i = 1; i < route.size(); ++i)
     if (squared_distance(place, Segment{route[i - 1], route[i]}) < separation_m * separation_m) return true;
   return false;
@@ -47,7 +50,7 @@ void GiveWaySearch::begin(GiveWayQuery query, ObstacleWorld fixed) {
   fixed_ = std::move(fixed);
   routes_.clear();
   way_.clear();
-  is_in_the_way_ = false;
+  is_in_the_way_ = is_place_on_route_ = false;
   next_ = 0;
   stage_ = Stage::kRoutes;
 }
@@ -68,30 +71,41 @@ void GiveWaySearch::step(Rng& rng) {
 void GiveWaySearch::plan_route(Rng& rng) {
   if (next_ < query_.trips.size()) {
     const auto& [from, to] = query_.trips[next_++];
-    if (auto route = path(from, to, rng)) routes_.push_back(std::move(*route));
+    if (auto route = path(fixed_, from, to, rng)) routes_.push_back(std::move(*route));
     return;
   }
   if (next_ < query_.trips.size() + query_.returns.size() && !query_.way.empty()) {
     const auto& [from, to] = query_.returns[next_++ - query_.trips.size()];
-    const auto route = path(from, to, rng);
-    is_in_the_way_ |= route && is_place_on_route(*route, query_.way.front(), floor_.min_separation_m);
+    const auto route = path(fixed_, from, to, rng);
+    is_in_the_way_ |= route && is_on_line(*route, query_.left_m, floor_.min_separation_m);
     return;
   }
   next_ = 0;
   stage_ = query_.way.empty() ? Stage::kPassages : Stage::kIdle;
-  is_in_the_way_ |= std::ranges::any_of(
-      routes_, [&](const Way& route) { return is_on_route(route, query_.way, floor_.min_separation_m); });
+  is_place_on_route_ = !query_.way.empty() && std::ranges::any_of(routes_, [&](const Way& route) {
+    return is_on_line(route, query_.way.back(), floor_.min_separation_m);
+  });
+  is_in_the_way_ |= !query_.way.empty() && std::ranges::any_of(routes_, [&](const Way& route) {
+    return is_on_route(route, query_.way, floor_.min_separation_m) ||
+           is_on_line(route, query_.left_m, floor_.min_separation_m);
+  });
 }
 
 void GiveWaySearch::check_passage(Rng& rng) {
   while (next_ < routes_.size()) {
     const Way& route = routes_[next_++];
-    if (!is_place_on_route(route, query_.position_m, floor_.min_separation_m)) continue;
+    if (!is_on_line(route, query_.position_m, floor_.min_separation_m)) continue;
     // Several robots together may close a path that each of them alone would leave open.
-    std::vector<ObstacleId> robots{fixed_.add(disc_at(query_.position_m))};
+    std::vector<ObstacleId> robots;
+    const auto add = [&](const Vec2& position_m) {
+      Circle disc = disc_at(position_m);
+      disc.radius_m += kSpare_m;
+      robots.push_back(fixed_.add(disc));
+    };
+    add(query_.position_m);
     for (const Vec2& other : query_.others_m)
-      if (other != route.front()) robots.push_back(fixed_.add(disc_at(other)));
-    const std::optional<Way> around = path(route.front(), route.back(), rng);
+      if (other != route.front()) add(other);
+    const std::optional<Way> around = path(fixed_, route.front(), route.back(), rng);
     for (const ObstacleId robot : robots) fixed_.remove(robot);
     is_in_the_way_ = !around || around->back() != route.back();
     if (is_in_the_way_) begin_places();
@@ -101,8 +115,12 @@ void GiveWaySearch::check_passage(Rng& rng) {
 }
 
 void GiveWaySearch::begin_places() {
+  afterwards_ = fixed_;
+  for (const Vec2& end : query_.ends_m) afterwards_.add(disc_at(end));
+  if (query_.home_m && afterwards_.touches(*query_.home_m, floor_.required_m)) query_.home_m.reset();
   // Robots are never exactly at rest.
   for (const Vec2& other : query_.others_m) {
+    if (std::ranges::find(query_.passable_m, other) != query_.passable_m.end()) continue;
     Circle disc = disc_at(other);
     disc.radius_m += kRouteClearance_m;
     fixed_.add(disc);
@@ -110,22 +128,32 @@ void GiveWaySearch::begin_places() {
   candidates_.clear();
   taken_.clear();
   unreachable_.clear();
+  without_return_.clear();
+  found_.clear();
   ring_ = index_ = 0;
   rings_ = static_cast<int>(query_.range_m / (kGridFraction * floor_.radius_m));
   stage_ = Stage::kPlaces;
 }
 
 void GiveWaySearch::search_places(Rng& rng) {
-  const std::optional<Vec2> place = next_place();
-  if (place) {
-    auto found = path(query_.position_m, *place, rng);
-    if (found && found->back() == *place)
-      way_ = std::move(*found);
+  if (!found_.empty()) {
+    const auto back = path(afterwards_, found_.back(), *query_.home_m, rng);
+    if (back && back->back() == *query_.home_m)
+      way_ = found_;
     else
+      without_return_.push_back(found_.back());
+    found_.clear();
+  } else if (const std::optional<Vec2> place = next_place()) {
+    auto found = path(fixed_, query_.position_m, *place, rng);
+    if (!found || found->back() != *place)
       unreachable_.push_back(*place);
+    else
+      (query_.home_m ? found_ : way_) = std::move(*found);
   }
+  if (!found_.empty()) return;
   const bool are_all_examined = ring_ > rings_ && candidates_.empty();
-  if (!way_.empty() || are_all_examined || unreachable_.size() == kMaxPlans) stage_ = Stage::kIdle;
+  if (!way_.empty() || are_all_examined || unreachable_.size() + without_return_.size() >= kMaxPlans)
+    stage_ = Stage::kIdle;
 }
 
 std::optional<Vec2> GiveWaySearch::next_place() {
@@ -137,9 +165,11 @@ std::optional<Vec2> GiveWaySearch::next_place() {
       const Vec2 place = candidates_.back().second;
       candidates_.pop_back();
       // All places connected with an unreachable place are also unreachable.
-      const bool is_unreachable = std::ranges::any_of(
-          unreachable_, [&](const Vec2& other) { return !fixed_.touches(other, place, floor_.required_m); });
-      if (!is_unreachable) return place;
+      const auto is_connected = [&](const ObstacleWorld& world, const std::vector<Vec2>& others) {
+        return std::ranges::any_of(
+            others, [&](const Vec2& other) { return !world.touches(other, place, floor_.required_m); });
+      };
+      if (!is_connected(fixed_, unreachable_) && !is_connected(afterwards_, without_return_)) return place;
       continue;
     }
     const std::optional<Vec2> place = next_of_grid();
@@ -160,8 +190,7 @@ bool GiveWaySearch::take_candidate(const Vec2& place) {
   const auto is_near = [&](const Vec2& other) { return (other - place).norm() < 2 * floor_.radius_m; };
   if (std::ranges::any_of(query_.unreachable_m, is_near)) return false;
   if (!floor_.field.contains(place, floor_.radius_m) || fixed_.touches(place, floor_.required_m) ||
-      std::ranges::any_of(routes_,
-                          [&](const Way& route) { return is_place_on_route(route, place, separation_m); }))
+      std::ranges::any_of(routes_, [&](const Way& route) { return is_on_line(route, place, separation_m); }))
     return false;
   taken_.insert(key);
   return true;
@@ -179,11 +208,12 @@ std::optional<Vec2> GiveWaySearch::next_of_grid() {
   return query_.position_m + kGridFraction * floor_.radius_m * cell;
 }
 
-std::optional<std::vector<Vec2>> GiveWaySearch::path(const Vec2& from_m, const Vec2& to_m, Rng& rng) const {
+std::optional<std::vector<Vec2>> GiveWaySearch::path(const ObstacleWorld& world, const Vec2& from_m,
+                                                     const Vec2& to_m, Rng& rng) const {
   Budget budget;
   budget.samples = kMaxPathSamples;
   const double extra_m = 2 * (floor_.required_m - floor_.radius_m);
-  const DiscDomain domain(fixed_, {floor_.field.length_m + extra_m, floor_.field.width_m + extra_m},
+  const DiscDomain domain(world, {floor_.field.length_m + extra_m, floor_.field.width_m + extra_m},
                           floor_.required_m, from_m, to_m,
                           planner_.domain_settings(floor_.field, floor_.radius_m));
   const Plan<Vec2>& plan = planner_.plan(domain, from_m, budget, rng);

@@ -12,7 +12,9 @@ struct Intent {
   Vec2 velocity_mps{0, 0};
   double velocity_duration_s = 0;
   Vec2 waypoint_m{0, 0};
-  Vec2 goal_m{0, 0};    ///< end of the robot's route
+  /// End of the robot's route. For an idle robot that goes out of the way: the place where it goes, even if
+  /// its route ends elsewhere.
+  Vec2 goal_m{0, 0};
   Vec2 target_m{0, 0};  ///< the place that the robot wants to reach, even if its route ends elsewhere
   /// When the robot expected to reach its goal when it set out, had it the floor for itself; see
   /// right_of_way.hpp.

@@ -30,16 +30,25 @@ struct Robot {
   Rng rng{1};
   double decided_s = 0;
 
+  std::optional<Vec2> home_m{};  // where the robot comes back to
+
   /// Decides ten times per second until this time. Returns the place to give way, if any.
   std::optional<Vec2> decide(double seconds, const Vec2& position_m, const std::vector<OtherRobot>& others,
                              const ObstacleWorld& fixed) {
     for (; decided_s < seconds + 1e-6; decided_s += 0.1) decide_once(decided_s, position_m, others, fixed);
     return give_way.place_m();
   }
+  /// Decides until it chooses a place, at most until this time.
+  std::optional<Vec2> first_place_m(double until_s, const Vec2& position_m,
+                                    const std::vector<OtherRobot>& others, const ObstacleWorld& fixed) {
+    for (; decided_s < until_s && !give_way.place_m(); decided_s += 0.1)
+      decide_once(decided_s, position_m, others, fixed);
+    return give_way.place_m();
+  }
   std::optional<Vec2> decide_once(double seconds, const Vec2& position_m,
                                   const std::vector<OtherRobot>& others, const ObstacleWorld& fixed) {
     if (give_way.track_progress(at(seconds), 5 - position_m.x()) && !give_way.is_searching())
-      give_way.begin_search(at(seconds), position_m, others, fixed);
+      give_way.begin_search(at(seconds), position_m, others, fixed, home_m);
     while (give_way.is_searching()) give_way.search(at(seconds), rng);
     return give_way.place_m();
   }
@@ -174,10 +183,14 @@ TEST_CASE("a robot chooses another place if its place is occupied or cannot be r
   CHECK(first->y() > 0);
   const bool is_taken = GENERATE(true, false);
   CAPTURE(is_taken);
-  if (is_taken) others.push_back({1, true, *first});
-  std::optional<Vec2> place;
-  for (double t = 2.6; t < 9; t += 0.1) place = robot.decide(t, {0, 0}, others, fixed);
-  REQUIRE(place);
+  if (is_taken) {
+    others.push_back({1, true, *first});
+    others.back().rests = true;
+  }
+  std::optional<Vec2> place = first;
+  for (double t = 2.6; t < 15 && place && place->y() > 0; t += 0.1)
+    place = robot.decide(t, {0, 0}, others, fixed);
+  REQUIRE(place);  // until it has found another place, the robot keeps its place
   CHECK(place->y() < 0);
 }
 
@@ -221,6 +234,96 @@ TEST_CASE("a robot does not give way to a robot that can drive around it, nor im
   Robot paused;
   CHECK_FALSE(paused.decide_once(0, {0, 0}, {}, fixed));
   CHECK_FALSE(paused.decide_once(60, {0, 0}, {oncoming_robot(0.2, -4.9)}, fixed));
+}
+
+/// A corridor along the x axis, 0.3 m wide, that is closed at x = -1 and leads into the open at x = 1.
+ObstacleWorld dead_end() {
+  return ObstacleWorld({Box{{-5, -2}, {1, -0.15}}, Box{{-5, 0.15}, {1, 2}}, Box{{-5, -0.15}, {-1, 0.15}}});
+}
+
+TEST_CASE("a robot that cannot get out chooses a place behind the robot that waits for it") {
+  Robot robot;
+  OtherRobot other = oncoming_robot(0.4, -0.8);
+  other.rests = true;
+  SECTION("the other one waits") {
+    other.waits = true;
+    const std::optional<Vec2> place = robot.first_place_m(10, {0, 0}, {other}, dead_end());
+    REQUIRE(place);
+    CHECK(place->x() > 0.4 + kSeparation_m);
+  }
+  SECTION("the other one does not leave its place") {
+    CHECK_FALSE(robot.decide(20, {0, 0}, {other}, dead_end()));
+  }
+}
+
+TEST_CASE("a robot that comes back chooses a place from which the others do not lock it out") {
+  Robot robot;
+  OtherRobot other = oncoming_robot(0.4, -0.5);
+  other.rests = other.waits = true;
+  other.end_m = Vec2(-0.5, 0);
+  SECTION("it comes back") {
+    robot.home_m = Vec2(0, 0);
+    const std::optional<Vec2> place = robot.first_place_m(10, {0, 0}, {other}, dead_end());
+    REQUIRE(place);
+    CHECK(place->x() > 0.4 + kSeparation_m);
+  }
+  SECTION("it does not come back") {
+    const std::optional<Vec2> place = robot.first_place_m(10, {0, 0}, {other}, dead_end());
+    REQUIRE(place);
+    CHECK(place->x() < -0.5 - kSeparation_m);
+  }
+  SECTION("no such place exists: it is locked out rather than in the way") {
+    robot.home_m = Vec2(-0.2, 0);
+    other.end_m = Vec2(0.3, 0);
+    other.goals_m = {Vec2(-0.5, 0), Vec2(-0.5, 0)};
+    const ObstacleWorld closed(
+        {Box{{-5, -2}, {5, -0.15}}, Box{{-5, 0.15}, {5, 2}}, Box{{-5, -0.15}, {-1, 0.15}}});
+    const std::optional<Vec2> place = robot.first_place_m(60, {0, 0}, {other}, closed);
+    REQUIRE(place);
+    CHECK(place->x() < -0.5 - kSeparation_m);
+  }
+}
+
+TEST_CASE("a robot at its place chooses another one when the others have to pass there") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  const std::optional<Vec2> first = robot.decide(2.5, {0, 0}, {oncoming_robot(0.2, -4.9)}, fixed);
+  REQUIRE(first);
+  // The other one has a goal in the bay now.
+  OtherRobot other = oncoming_robot(-0.6, 0);
+  other.goals_m = {*first, *first};
+  const std::optional<Vec2> second = robot.decide(8, *first, {other}, fixed);
+  REQUIRE(second);
+  CHECK((*second - *first).norm() >= kSeparation_m);
+}
+
+TEST_CASE("a robot whose place is taken waits where it is in nobody's way, and continues in the end") {
+  const ObstacleWorld fixed = corridor(-1);
+  Robot robot;
+  const std::optional<Vec2> first = robot.decide(2.5, {0, 0}, {oncoming_robot(0.2, -4.9)}, fixed);
+  REQUIRE(first);
+  // It is beside its place now. Another robot has come to rest there.
+  OtherRobot taker{1, true, *first + Vec2(0.12, 0)};
+  taker.rests = true;
+  const Vec2 here = *first - Vec2(0.08, 0);
+  for (const double x_m : {0.2, -0.1}) {
+    CAPTURE(x_m);
+    const std::optional<Vec2> place = robot.decide(4 - x_m, here, {oncoming_robot(x_m, -4.9), taker}, fixed);
+    REQUIRE(place);
+    CHECK((*place - here).norm() < 0.05);
+  }
+  CHECK_FALSE(robot.decide(8, here, {oncoming_robot(-2, -4.9), taker}, fixed));
+}
+
+TEST_CASE("a robot makes room for one that is a few centimetres from its goal") {
+  const ObstacleWorld open;
+  Robot robot;
+  // It rests 7 cm from the goal of the other one, which is as near to it as possible.
+  OtherRobot other = oncoming_robot(0.2, 0);
+  other.goals_m = {Vec2(0.2, 0), Vec2(0.15, 0)};
+  const std::optional<Vec2> place = robot.first_place_m(4, {0, 0}, {other}, open);
+  REQUIRE(place);
+  CHECK((*place - Vec2(0.15, 0)).norm() >= kSeparation_m);
 }
 
 }  // namespace sidestep::give_way_test
