@@ -17,6 +17,7 @@ namespace {
 constexpr Duration kMinHold{16'000'000};
 /// A goal that is unreachable for longer than this is reported as blocked.
 constexpr Duration kBlockedAfter{300'000'000};
+constexpr double kAnnounced_m = 0.01;  ///< places nearer to each other than this need not be announced anew
 constexpr double kStandstill_mps = 0.01;  ///< intended speeds below this count as being at rest
 
 std::span<const double> extra_clearances_m(const FloorSpec& floor) {
@@ -107,7 +108,7 @@ MotionPlanner::MotionPlanner(const FloorSpec& floor, const RobotSpec& robot, Pla
       surroundings_(rules_),
       route_(planner_of(floor, robot), rules_, extra_clearances_m(floor)),
       blockage_(kBlockedAfter),
-      passage_(rules_),
+      passage_(robot.id, rules_),
       corners_(rules_.radius_m),
       intents_(robot.id, route_.local_methods(), rules_, scratch.steering),
       robot_(robot.id) {}
@@ -132,8 +133,7 @@ std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
                          : intents_.choose({at_start, query.start, *route, hold_bounds(query.lead).max},
                                            route_, query.observations.neighbours());
   intent.target_m = home_m(query);
-  // Robots in the way to the place have to know where it is.
-  if (passage_.is_idle() && passage_.place_m()) intent.goal_m = *passage_.place_m();
+  intent.goal_m = announced_goal_m(route->end_m);
   return follow_intent(query, intent, at_start, *route, course);
 }
 
@@ -159,7 +159,8 @@ Vec2 MotionPlanner::home_m(const Query& query) const {
 
 std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& target) {
   const bool gives_way = passage_.place_m().has_value();
-  if (will_rest_at(query.base, target) && !is_kept_out(target)) {
+  const bool rests_at_target = will_rest_at(query.base, target) && !is_kept_out(target);
+  if (rests_at_target && (!query.base.intent || has_announced(query, target))) {
     if (!gives_way) {
       blockage_.clear();
       home_m_.reset();
@@ -180,15 +181,19 @@ std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& t
     blockage_.on_blocked(*other, query.now);
   passage_.on_route(*route);
   const bool is_as_near_as_possible = !route->reaches_goal && will_rest_at(query.base, route->end_m);
-  return is_as_near_as_possible && is_told(query) ? std::nullopt : route;
+  return is_as_near_as_possible && has_announced(query, route->end_m) ? std::nullopt : route;
 }
 
-bool MotionPlanner::is_told(const Query& query) const {
-  constexpr double kSame_m = 1e-3;
+Vec2 MotionPlanner::announced_goal_m(const Vec2& end_m) const {
+  // Robots in the way to the place have to know where it is.
+  const bool makes_room = passage_.is_idle() && passage_.place_m();
+  return makes_room ? *passage_.place_m() : end_m;
+}
+
+bool MotionPlanner::has_announced(const Query& query, const Vec2& end_m) const {
   const std::optional<Intent>& intent = query.base.intent;
-  if (!intent || (intent->target_m - home_m(query)).norm() >= kSame_m) return false;
-  const std::optional<Vec2> place = passage_.is_idle() ? passage_.place_m() : std::nullopt;
-  return !place || (intent->goal_m - *place).norm() < kSame_m;
+  return intent && (intent->target_m - home_m(query)).norm() < kAnnounced_m &&
+         (intent->goal_m - announced_goal_m(end_m)).norm() < kAnnounced_m;
 }
 
 void MotionPlanner::update_blockage(const Route& route, Time now) {

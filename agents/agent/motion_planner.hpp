@@ -94,8 +94,10 @@ class MotionPlanner {
   Vec2 home_m(const Query& query) const;
   /// The route to the target; nullopt if the robot is at the target, or no route is known in this cycle.
   std::optional<Route> find_route(const Query& query, const Vec2& target_m);
-  /// Whether the robot's last version says where it wants to go.
-  bool is_told(const Query& query) const;
+  /// The place that the robot announces as the end of its route.
+  Vec2 announced_goal_m(const Vec2& end_m) const;
+  /// Whether the intent of the robot's last version says where it wants to go and where its route ends.
+  bool has_announced(const Query& query, const Vec2& end_m) const;
   void update_blockage(const Route& route, Time now);
   /// The robot's course; nullptr if the robot has to find its way without one.
   const DrivingCourse* follow_course(const Query& query, const State& at_start, const Route& route);

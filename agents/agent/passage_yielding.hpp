@@ -19,7 +19,7 @@ namespace sidestep {
 class PassageYielding {
  public:
   /// `rules` must outlive this object.
-  explicit PassageYielding(const FloorRules& rules);
+  PassageYielding(RobotId self, const FloorRules& rules);
 
   /// Call it once per planning. `home_m`: where the robot rests if it is idle and in nobody's way.
   void update(Time now, const Vec2& home_m, Observations& observations, const Assignment& assignment,
@@ -30,6 +30,9 @@ class PassageYielding {
   void restart(Time now) {
     give_way_.restart(now);
     pause_ = {};
+    ignored_until_ = {};
+    stays_.clear();
+    waiting_.clear();
   }
 
   /// The place where the robot should go instead of its goal; nullopt if it should go to its goal.
@@ -44,10 +47,14 @@ class PassageYielding {
   std::vector<OtherRobot> others_in_passages(Time now, Observations& observations,
                                              const Assignment& assignment) const;
   OtherRobot other_nearby(const Version& version, Time now, const Assignment& assignment) const;
+  void search(Time now, Rng& rng);
   /// Whether a robot knows no way to its target.
   static bool has_no_way(const Version& version);
-  /// Whether a robot without an order makes room for others.
+  /// Whether a robot that knows no way to its target has another place to go. If it is idle, it makes room
+  /// for others.
   static bool is_leaving(const Version& version);
+  /// Whether this robot lets an idle one out that makes room for others.
+  bool lets_out(const Version& version, Time now) const;
   /// Whether another robot without an order wants to come back to where this idle robot rests.
   bool wants_place_of_this_robot(const Version& version) const;
   /// Finds the robots that wait: they have an order to drive, or have no way back to their places, and stay
@@ -59,6 +66,7 @@ class PassageYielding {
   /// How far away the robot notices others.
   double view_m() const;
 
+  RobotId self_;
   const FloorRules& rules_;
   Duration passage_period_;  // how long a robot has the right of way in a passage
   GiveWay give_way_;
@@ -67,6 +75,7 @@ class PassageYielding {
   // An idle robot that stepped aside in vain does not do so again before this time.
   Time paused_until_{};
   Duration pause_{};
+  Time ignored_until_{};  // until then this robot, if it has an order, lets no idle robots out
   /// A robot that may be waiting, and since when it has been near a place.
   struct Stay {
     RobotId robot;

@@ -22,6 +22,9 @@ constexpr Duration kMaxPause{1'000'000'000};
 /// The first search covers places up to this distance. Each further search covers twice the distance.
 constexpr double kFirstRange_m = 1;
 constexpr double kLongestRange_m = 8;
+/// If the others need the robot's place, they are getting ahead, and the robot gives way for longer. But they
+/// may also push to and fro, so this happens only so often.
+constexpr int kMaxMoves = 5;
 
 }  // namespace
 
@@ -36,6 +39,7 @@ void GiveWay::restart(Time now) {
   shortest_m_ = kInfinity_m;
   way_.clear();
   is_replacing_ = false;
+  moves_ = 0;
   yields_to_.clear();
   trips_.clear();
   unreachable_.clear();
@@ -135,9 +139,12 @@ void GiveWay::search(Time now, Rng& rng) {
   passes_waiting_ = false;
   is_to_return_ = true;
   if (search_.is_in_the_way()) {
-    if (!is_replacing_) left_m_ = search_.way().front();
+    if (!is_replacing_) {
+      left_m_ = search_.way().front();
+      began_at_ = now;
+    }
     way_ = search_.way();
-    began_at_ = nearer_at_ = now;
+    nearer_at_ = now;
     nearest_m_ = kInfinity_m;
     yields_to_ = searched_;
   } else if (is_replacing_) {
@@ -156,6 +163,7 @@ void GiveWay::check_way(Time now) {
   if (!search_.is_in_the_way() || has_given_up_) return restart(now);
   // The others have moved, and may need this place now.
   is_replacing_ = search_.is_place_on_route() && nearest_m_ < kProgress_m;
+  if (is_replacing_ && ++moves_ <= kMaxMoves) began_at_ = now;
 }
 
 void GiveWay::widen_search() {

@@ -29,7 +29,7 @@ struct OtherRobot {
   bool is_held = false;         ///< it stays where it is
   bool returns = false;         ///< it has no order to drive, and comes back to where it was
   bool rests = false;           ///< it has been at rest for a moment
-  bool waits = false;           ///< it rests, and leaves its place for a robot that has to get out
+  bool waits = false;           ///< it stays, but leaves its place for a robot that has to get out
   std::optional<Vec2> end_m{};  ///< where it will rest; nullopt if it is going out of the way
 };
 
@@ -57,7 +57,7 @@ class GiveWay {
   /// Performs one step of the search; the last step decides whether to give way. Precondition:
   /// is_searching().
   void search(Time now, Rng& rng);
-  /// Whether the last step of the search has given up a place because nobody had passed.
+  /// Whether the last step of the search has stopped giving way although the others have not passed.
   bool has_given_up() const { return has_given_up_; }
   /// The place where the robot should go instead of its goal; nullopt if it should go to its goal.
   std::optional<Vec2> place_m() const { return way_.empty() ? std::nullopt : std::optional(way_.back()); }
@@ -78,6 +78,8 @@ class GiveWay {
   void remember_trips(const OtherRobot& other);
   /// Makes the next search consider more places.
   void widen_search();
+  /// Stops giving way if the others have passed or nobody passes for a long time. Otherwise determines
+  /// whether they need the robot's place.
   void check_way(Time now);
 
   GiveWaySettings settings_;
@@ -92,6 +94,7 @@ class GiveWay {
   std::vector<RobotId> yields_to_;      // robots that keep the right of way until they have passed
   std::multimap<RobotId, Trip> trips_;  // last known trips of all robots that were near when a search began
   std::vector<Vec2> unreachable_;       // places that could not be reached
+  int moves_ = 0;                       // number of times that others needed its place
   double nearest_m_ = kInfinity_m;      // smallest distance to the place so far
   Time nearer_at_{};
   bool has_given_up_ = false;

@@ -12,7 +12,8 @@ constexpr double kRouteClearance_m = 0.02;
 /// Robots are never exactly where they rest: a gap that is wider than necessary by less than this counts as
 /// closed.
 constexpr double kSpare_m = 0.005;
-constexpr std::size_t kMaxPlans = 12;  ///< maximum number of paths to places that are planned in one search
+/// A search ends when so many places turn out to be out of reach, or so many to have no way back.
+constexpr std::size_t kMaxPlans = 12;
 constexpr std::size_t kMaxPathSamples = 5000;
 
 /// Whether a robot on this path, which may be a single position, would block a route.
@@ -115,9 +116,11 @@ void GiveWaySearch::check_passage(Rng& rng) {
 }
 
 void GiveWaySearch::begin_places() {
-  afterwards_ = fixed_;
-  for (const Vec2& end : query_.ends_m) afterwards_.add(disc_at(end));
-  if (query_.home_m && afterwards_.touches(*query_.home_m, floor_.required_m)) query_.home_m.reset();
+  if (query_.home_m) {
+    afterwards_ = fixed_;
+    for (const Vec2& end : query_.ends_m) afterwards_.add(disc_at(end));
+    if (afterwards_.touches(*query_.home_m, floor_.required_m)) query_.home_m.reset();
+  }
   // Robots are never exactly at rest.
   for (const Vec2& other : query_.others_m) {
     if (std::ranges::find(query_.passable_m, other) != query_.passable_m.end()) continue;
@@ -152,7 +155,8 @@ void GiveWaySearch::search_places(Rng& rng) {
   }
   if (!found_.empty()) return;
   const bool are_all_examined = ring_ > rings_ && candidates_.empty();
-  if (!way_.empty() || are_all_examined || unreachable_.size() + without_return_.size() >= kMaxPlans)
+  if (!way_.empty() || are_all_examined || unreachable_.size() >= kMaxPlans ||
+      without_return_.size() >= kMaxPlans)
     stage_ = Stage::kIdle;
 }
 

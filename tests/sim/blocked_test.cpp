@@ -34,7 +34,7 @@ TEST_CASE(
   OrderedSystem run(waiting_robots(4), 1);
   const Vec2 place(2, -1.5);  // position of robot 1
   run.system.run_for(seconds(1));
-  for (const RobotId robot : {0, 2, 3}) {
+  for (const RobotId robot : {0, 2}) {
     CAPTURE(robot);
     const auto order = run.send(msg::OrderKind::ORDER_GO, robot, kClient, {{place}});
     CHECK(run.run_until(seconds(15), [&] { return run.arrived.contains(order); }));
@@ -42,6 +42,29 @@ TEST_CASE(
     run.system.run_for(seconds(10));
     CHECK(distance(run, robot, place) < kRadius_m / 2);
   }
+  // The others wait nearby.
+  for (const RobotId robot : {0, 1}) CHECK(distance(run, robot, place) < 1);
+  run.require_safe();
+}
+
+TEST_CASE("robots wait beside a held robot that rests on their goal, and continue when the goal is free") {
+  OrderedSystem run(waiting_robots(4), 1);
+  const Vec2 place(2, -1.5);  // position of robot 1
+  run.system.run_for(seconds(1));
+  run.send(msg::OrderKind::ORDER_HOLD, 1, kClient);
+  const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
+  REQUIRE(comes_to_rest_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
+  CHECK(run.statuses[0].blocker() == 1);
+  CHECK(distance(run, 0, place) < 2 * kRadius_m + kMaxWaitingGap_m);
+  run.system.run_for(seconds(3));
+  CHECK(comes_to_rest_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
+  // Robot 2 waits next to robots 0 and 1.
+  const auto third = run.send(msg::OrderKind::ORDER_GO, 2, kClient, {{place}});
+  REQUIRE(comes_to_rest_blocked(run, 2, msg::BlockReason::BLOCK_ROBOT));
+  run.send(msg::OrderKind::ORDER_RESUME, 1, kClient);
+  run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{0, 0}}});
+  CHECK(
+      run.run_until(seconds(10), [&] { return run.arrived.contains(order) || run.arrived.contains(third); }));
   run.require_safe();
 }
 
