@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/audit/contact_excuses.hpp"
 
+#include <algorithm>
+#include <limits>
+
 namespace sidestep {
 
 ContactExcuses::ContactExcuses(const AuditedRun& run, const RobotRecords& robots, const RunCoverage& coverage,
@@ -12,6 +15,7 @@ ContactExcuses::ContactExcuses(const AuditedRun& run, const RobotRecords& robots
       positions_(positions),
       disturbances_(disturbances),
       findings_(findings),
+      obstacles_(run.scenario.obstacles.begin(), run.scenario.obstacles.end()),
       observed_(robots.all().size()) {}
 
 bool ContactExcuses::excuses(RobotId first, std::optional<RobotId> second, Time at, std::int64_t apart_ns) {
@@ -39,7 +43,10 @@ bool ContactExcuses::are_known(std::optional<std::size_t> robot, std::int64_t ap
 
 void ContactExcuses::observe(const AuditedRobot& robot, const Vec2& position_m, double speed_mps,
                              double error_m, double allowance_m) {
-  ObservedRobot& observed = observed_[robots_.index_of(robot)].emplace(position_m, speed_mps, 0, false);
+  const std::size_t index = robots_.index_of(robot);
+  ObservedRobot& observed = observed_[index].emplace(position_m, speed_mps, 0, false);
+  if (disturbances_.has_excuse(index))
+    observed.from_obstacles_m = distance_from_obstacles_m(position_m) - run_.scenario.radius_m;
   const bool is_executing = robot.last_report && !robot.last_report->is_lifted;
   const KnownVersion* const version = is_executing ? robot.find(robot.last_report->executing) : nullptr;
   if (!version || !version->has_content) return;
@@ -48,6 +55,20 @@ void ContactExcuses::observe(const AuditedRobot& robot, const Vec2& position_m, 
   const bool is_recent = run_.is_complete() || findings_.now - robot.heard_at <= 2 * run_.scenario.cycle;
   observed.is_in_place = is_recent && version->was_in_ledger() &&
                          error_m <= run_.scenario.tracking_bound_m + observed.inflation_m + allowance_m;
+}
+
+double ContactExcuses::distance_from_obstacles_m(const Vec2& position_m) const {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const AuditShape& obstacle : obstacles_)
+    nearest_m = std::min(nearest_m, obstacle.distance_m(position_m.x(), position_m.y()));
+  if (!run_.scenario.map) return nearest_m;
+  constexpr double kNear_m = 1.5;  // more than any robot's inflation, beyond its radius and margin
+  const Vec2 reach = Vec2::Constant(run_.scenario.radius_m + run_.scenario.margin_m + kNear_m);
+  run_.scenario.map->cells().for_each_box({position_m - reach, position_m + reach}, [&](const Box& cells) {
+    nearest_m = std::min(nearest_m, AuditShape(cells).distance_m(position_m.x(), position_m.y()));
+    return true;
+  });
+  return nearest_m;
 }
 
 void ContactExcuses::add_to(AuditTotals& totals) const {

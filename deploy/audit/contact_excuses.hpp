@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "deploy/audit/audit_shape.hpp"
 #include "deploy/audit/position_audit.hpp"
 
 namespace sidestep {
@@ -37,12 +38,15 @@ class ContactExcuses {
   void add_to(AuditTotals& totals) const;
 
  private:
+  double distance_from_obstacles_m(const Vec2& position_m) const;
+
   const AuditedRun& run_;
   const RobotRecords& robots_;
   const RunCoverage& coverage_;
   const PositionAudit& positions_;
   Disturbances& disturbances_;
   AuditFindings& findings_;
+  std::vector<AuditShape> obstacles_;
   std::vector<std::optional<ObservedRobot>>
       observed_;  ///< last observed on the floor; parallel to the robots
   bool are_contacts_unknown_ = false;

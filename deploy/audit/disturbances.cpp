@@ -73,7 +73,7 @@ bool Disturbances::is_displaced(std::size_t robot) const {
 void Disturbances::displace(std::size_t robot, std::string_view cause, Time end) {
   auto& displacement = states_[robot].displacement;
   if (displacement) end = std::max(end, displacement->end);
-  displacement = Displacement{cause, end, std::nullopt, std::vector<bool>(states_.size())};
+  displacement = Displacement{cause, end, std::nullopt, std::vector<bool>(states_.size()), false};
 }
 
 void Disturbances::announce(std::size_t robot, std::string_view cause) {
@@ -100,7 +100,7 @@ std::optional<std::string_view> Disturbances::excuse(std::optional<std::size_t> 
                                  std::optional<std::size_t> other) -> std::optional<std::string_view> {
     if (!disturbed || !states_[*disturbed].displacement) return std::nullopt;
     const Displacement& displacement = *states_[*disturbed].displacement;
-    const bool is_excused = other ? !displacement.is_over[*other] : !displacement.back_at;
+    const bool is_excused = other ? !displacement.is_over[*other] : !displacement.is_over_for_obstacles;
     return is_excused ? std::optional(displacement.cause) : std::nullopt;
   };
   const auto cause = cause_from(first, second);
@@ -171,7 +171,9 @@ void Disturbances::update_displacement(std::size_t robot) {
     displacement->back_at = now_;
   }
   const Time back_at = *displacement->back_at;
-  bool are_all_over = true;
+  if (!robots_[robot] || robots_[robot]->from_obstacles_m >= settings_.margin_m + robots_[robot]->inflation_m)
+    displacement->is_over_for_obstacles = true;
+  bool are_all_over = displacement->is_over_for_obstacles;
   for (std::size_t other = 0; other < states_.size(); ++other) {
     if (other == robot || displacement->is_over[other]) continue;
     const bool has_stopped =

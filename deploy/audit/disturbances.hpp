@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ struct ObservedRobot {
   double speed_mps = 0;
   double inflation_m = 0;    ///< inflation of the version that it executes
   bool is_in_place = false;  ///< it is where its version prescribes, and a ledger has contained that version
+  /// Distance of its edge from the nearest obstacle; infinite if that is far away. Needed only while
+  /// has_excuse().
+  double from_obstacles_m = std::numeric_limits<double>::infinity();
 };
 
 struct DisturbanceSettings {
@@ -26,13 +30,15 @@ struct DisturbanceSettings {
   /// A motion granted before a disturbance became known ends within this time.
   Duration braking_time{0};
   bool knows_causes = true;  ///< whether every announcement of a cause is received
+  double margin_m = 0;  ///< robots without inflation that are nearer to obstacles are in conflict with them
 };
 
 /// Decides which contacts are excused by disturbances of robots. A contact of two robots is excused only if
 /// one of them was disturbed, or was pushed by a disturbed robot. The excuse of a pair begins with the
 /// disturbance. It ends when the disturbed robot is back in place (at rest or moving), the other robot has
-/// rested since then, and the two are not in conflict. Robots are identified by their index in the roster.
-/// Times are those of ground truth or vision.
+/// rested since then, and the two are not in conflict. A contact with an obstacle is excused in the same way:
+/// a robot that was pushed towards an obstacle may have to rest nearer to it than the margin. Robots are
+/// identified by their index in the roster. Times are those of ground truth or vision.
 class Disturbances {
  public:
   static constexpr std::string_view kUnknownCause = "unknown";
@@ -63,6 +69,8 @@ class Disturbances {
   /// Whether the robot has rested out of place since a disturbance. A robot that gets no usable observations
   /// never learns of its displacement.
   bool rests_displaced(std::size_t robot) const { return states_[robot].rests_displaced; }
+  /// Whether any contact of the robot would be excused.
+  bool has_excuse(std::size_t robot) const { return states_[robot].displacement.has_value(); }
   /// Whether the robot was ever disturbed.
   bool was_disturbed(std::size_t robot) const { return states_[robot].reported_end.has_value(); }
   /// The observed time, summed over all pairs of robots on the floor, and the part of it in which a contact
@@ -76,6 +84,7 @@ class Disturbances {
     Time end{};  ///< end of the disturbance
     std::optional<Time> back_at;
     std::vector<bool> is_over;  ///< whether contacts are no longer excused, by other robot
+    bool is_over_for_obstacles = false;
   };
   struct State {
     std::optional<Time> reported_end;  ///< end of the disturbance, as last reported

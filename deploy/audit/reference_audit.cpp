@@ -17,7 +17,7 @@ constexpr std::int64_t kMaxDisturbance_ns = 3'600'000'000'000;
 DisturbanceSettings disturbance_settings(const Scenario& scenario, bool is_complete) {
   const double braking_s = scenario.limits.speed_mps / scenario.limits.deceleration_mps2;
   return {2 * scenario.radius_m + kContactTolerance_m, 2 * scenario.radius_m + scenario.margin_m,
-          from_seconds(braking_s) + kReactionTime, is_complete};
+          from_seconds(braking_s) + kReactionTime, is_complete, scenario.margin_m};
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ void TruthAudit::check_crashes(const msg::GroundTruth& truth, std::uint64_t repo
     const bool is_listed = truth.crashes_while_moving() - k <= msg::MAX_CONTACTS;
     const RobotId robot = truth.recent_moving_crashes()[k % msg::MAX_CONTACTS];
     const auto index = is_listed ? robots_.index_of(robot) : std::nullopt;
-    if (index && disturbances_.on_contact(index, std::nullopt, time_from_ns(truth.valid_at_ns()))) {
+    if (index && disturbances_.is_displaced(*index)) {
       ++findings_.totals.excused_crashes;
       continue;
     }

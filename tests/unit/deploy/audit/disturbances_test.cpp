@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kPeriod = 10ms;
 constexpr Time kBegin{100s};
-constexpr DisturbanceSettings kSettings{0.181, 0.19, 600ms};
+constexpr DisturbanceSettings kSettings{0.181, 0.19, 600ms, true, 0.01};
 
 using Robots = std::vector<std::optional<ObservedRobot>>;
 using Cause = std::optional<std::string_view>;
@@ -180,6 +180,29 @@ TEST_CASE("a pair that is in conflict stays excused until the two robots are apa
     floor.run(20ms);
     CHECK_FALSE(floor.contact(0, 1));
   }
+}
+
+TEST_CASE("a robot that was pushed towards an obstacle stays excused until it is clear of it") {
+  Floor floor;
+  floor.robots[0]->from_obstacles_m = 0.004;
+  floor.push(0);
+  floor.run(3s);
+  CHECK(floor.contact(0, std::nullopt) == Cause("push"));
+  CHECK_FALSE(floor.disturbances.is_displaced(0));  // a crash with an opponent would not be excused
+  CHECK_FALSE(floor.contact(0, 1));
+  SECTION("it is clear of the margin") { floor.robots[0]->from_obstacles_m = 0.011; }
+  SECTION("it is clear of its inflation, too") {
+    floor.robots[0]->inflation_m = 0.02;
+    floor.robots[0]->from_obstacles_m = 0.025;
+    floor.run(1s);
+    CHECK(floor.contact(0, std::nullopt) == Cause("push"));
+    floor.robots[0]->from_obstacles_m = 0.031;
+  }
+  floor.run(20ms);
+  CHECK_FALSE(floor.contact(0, std::nullopt));
+  floor.robots[0]->from_obstacles_m = 0.004;
+  floor.run(20ms);
+  CHECK_FALSE(floor.contact(0, std::nullopt));  // nothing has pushed it there
 }
 
 TEST_CASE("a robot that a disturbed robot pushes is disturbed by the same cause while they touch") {
